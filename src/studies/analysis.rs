@@ -18,6 +18,7 @@ pub mod support;
 pub mod test_set;
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use crate::files::bundle::file_name;
 use crate::run::choice::is_outside;
@@ -56,13 +57,10 @@ pub fn mark_several(records: &mut [Record]) {
         let error = r.found.solver_error.as_ref();
         high(r) && r.found.verdict.is_solved() && error.is_some_and(|e| e.jump > DIFFERENT)
     };
-    let ambiguous: Vec<Problem> = records
-        .iter()
-        .filter(differs)
-        .map(|r| r.asked.problem())
-        .collect();
+    let ambiguous = problems(records.iter().filter(differs));
     for record in records.iter_mut().filter(|r| high(r)) {
-        let ambiguous = ambiguous.contains(&record.asked.problem());
+        let mut all = ambiguous.iter();
+        let ambiguous = all.any(|own| own.is_same_problem(&record.asked));
         record.found.verdict.mark(ambiguous);
     }
 }
@@ -88,7 +86,7 @@ pub fn body_times(record: &Record, records: &[Record]) -> Option<[f64; 3]> {
         published_times(r).map(|spent| [spent.setup_s, spent.assembly_s, spent.factorisation_s])
     };
     let alike = |other: &&Record| {
-        record.asked.problem() == other.asked.problem()
+        record.asked.is_same_problem(&other.asked)
             && record.origin.machine == other.origin.machine
             && record.origin.profile == other.origin.profile
     };
@@ -139,12 +137,18 @@ pub fn common_tolerance(meshes: &[Vec<f64>]) -> Option<f64> {
     first.iter().filter(shared).copied().min_by(f64::total_cmp)
 }
 
+/// Records by problem, in the order of problems.
+pub fn by_problem<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Vec<&'a Record>> {
+    let mut all: Vec<&Record> = records.into_iter().collect();
+    all.sort_by(|a, b| compare_problems(&a.asked, &b.asked));
+    let own = all.chunk_by(|a, b| a.asked.is_same_problem(&b.asked));
+    own.map(<[&Record]>::to_vec).collect()
+}
+
 /// All problems of some records, in order.
-pub fn problems(records: &[Record]) -> Vec<Problem> {
-    let mut all: Vec<Problem> = records.iter().map(|r| r.asked.problem()).collect();
-    all.sort_by(compare_problems);
-    all.dedup();
-    all
+pub fn problems<'a>(records: impl IntoIterator<Item = &'a Record>) -> Vec<Problem> {
+    let all = by_problem(records).into_iter();
+    all.map(|own| own[0].asked.problem()).collect()
 }
 
 /// A problem in words that are also a file name: `case.r2.star.mu-0.3`. Where two problems of the list share them, the
@@ -157,26 +161,29 @@ pub fn problem_names(problems: &[Problem]) -> Vec<String> {
         let path = p.path_name();
         file_name(&[&format!("{}.r{}.{space}.mu-{mu}{path}", p.case, p.refine)])
     };
+    let mut alike: BTreeMap<String, usize> = BTreeMap::new();
+    for problem in problems {
+        *alike.entry(short(problem)).or_default() += 1;
+    }
     let name = |problem: &Problem| {
         let name = short(problem);
-        let alike = problems.iter().filter(|other| short(other) == name).count();
-        if alike == 1 {
+        if alike[&name] == 1 {
             return name;
         }
         let rest = problem.friction.iter().skip(1).map(f64::to_string);
         let rest: Vec<String> = rest.chain([problem.digest.clone()]).collect();
         format!("{name}-{}", rest.join("-"))
     };
-    let all: Vec<String> = problems.iter().map(name).collect();
-    let numbered = |(index, name): (usize, &String)| match all[..index]
-        .iter()
-        .filter(|other| *other == name)
-        .count()
-    {
-        0 => name.clone(),
-        before => format!("{name}-{}", before + 1),
+    let mut before: BTreeMap<String, usize> = BTreeMap::new();
+    let numbered = |name: String| {
+        let count = before.entry(name.clone()).or_default();
+        *count += 1;
+        match *count {
+            1 => name,
+            number => format!("{name}-{number}"),
+        }
     };
-    all.iter().enumerate().map(numbered).collect()
+    problems.iter().map(name).map(numbered).collect()
 }
 
 #[cfg(test)]

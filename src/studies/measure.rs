@@ -133,7 +133,7 @@ pub fn here(
     for of_body in tasks.chunk_by(|a, b| a.asked.body() == b.asked.body()) {
         let needs = |task| method(task).is_some_and(Choice::needs_traction);
         let traction = of_body.iter().any(needs);
-        for alike in of_body.chunk_by(|a, b| a.asked.problem() == b.asked.problem()) {
+        for alike in of_body.chunk_by(|a, b| a.asked.is_same_problem(&b.asked)) {
             let first = Task {
                 traction,
                 ..alike[0].clone()

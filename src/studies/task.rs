@@ -9,6 +9,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::files::bundle::file_name;
 use crate::files::digest::sha256;
 use crate::run::choice::Choice;
 use crate::run::verdict::Accuracy;
@@ -108,9 +109,8 @@ impl Asked {
         if self.tip.is_some() || self.finer.is_some() || self.view.is_some() {
             exact += &format!(" {:?}", (&self.tip, self.finer, &self.view));
         }
-        let safe = |c: char| if is_safe(c) { c } else { '-' };
         // The digest tells apart what is cut off.
-        let name: String = readable.chars().map(safe).take(MAX_ID - 9).collect();
+        let name: String = file_name(&[&readable]).chars().take(MAX_ID - 9).collect();
         format!("{name}.{}", &sha256(exact.as_bytes())[..8])
     }
 
@@ -118,8 +118,7 @@ impl Asked {
     pub fn file(&self) -> String {
         let Self { case, refine, .. } = self;
         let exact = format!("{:?}", self.problem());
-        let safe = |c: char| if is_safe(c) { c } else { '-' };
-        let name: String = case.chars().map(safe).take(MAX_ID / 2).collect();
+        let name: String = file_name(&[case]).chars().take(MAX_ID / 2).collect();
         format!("{name}.r{refine}.{}.jsonl", &sha256(exact.as_bytes())[..8])
     }
 
@@ -132,6 +131,35 @@ impl Asked {
             program: None,
             ..self.clone()
         }
+    }
+
+    /// Whether methods are given the same: [`Asked::problem`] of both, compared where they stand.
+    pub fn is_same_problem(&self, other: &Self) -> bool {
+        let Self {
+            case,
+            digest,
+            refine,
+            space,
+            tip,
+            friction,
+            increments,
+            cold,
+            view,
+            method: _,
+            tolerance: _,
+            finer: _,
+            program: _,
+        } = self;
+        (case, digest, refine, space, tip)
+            == (
+                &other.case,
+                &other.digest,
+                &other.refine,
+                &other.space,
+                &other.tip,
+            )
+            && (friction, increments, cold, view)
+                == (&other.friction, &other.increments, &other.cold, &other.view)
     }
 
     /// The same whatever the mesh.
@@ -173,10 +201,6 @@ impl Asked {
             accepted: self.tolerance,
         }
     }
-}
-
-fn is_safe(c: char) -> bool {
-    c.is_ascii_alphanumeric() || "._-=".contains(c)
 }
 
 /// What else is looked at on the way; it decides nothing about what is found.

@@ -6,7 +6,7 @@ use crate::report::number::{RESIDUAL_FLOOR, significant, value};
 use crate::report::plot::{Axis, Figure, Panel, Series, base, italic, looks, plain};
 use crate::report::{Bundle, ReportError};
 use crate::studies::analysis::series::{Point, Series as Sequence, Swept, series};
-use crate::studies::analysis::{problem_names, problems};
+use crate::studies::analysis::{by_problem, problem_names, problems};
 use crate::studies::record::Record;
 use crate::studies::statistics::Timing;
 use crate::studies::task::Problem;
@@ -31,8 +31,9 @@ const COMPARED: f64 = 1e-6;
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
     let all = problems(records);
-    for (problem, name) in all.iter().zip(problem_names(&all)) {
-        let found = series(records, problem);
+    let own = all.iter().zip(by_problem(records));
+    for ((problem, of_problem), name) in own.zip(problem_names(&all)) {
+        let found = series(&of_problem);
         if found.iter().any(|own| own.points.len() >= CURVE) {
             KIND.add(bundle, &name, figure(problem, &found, caveat).svg()?)?;
         }

@@ -3,7 +3,7 @@
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::run::verdict::Verdict;
-use crate::studies::analysis::compare_problems;
+use crate::studies::analysis::by_problem;
 use crate::studies::exchange::problem_file::OperatorSize;
 use crate::studies::record::{ProblemSize, Record};
 use crate::studies::sources::collection::family;
@@ -62,10 +62,11 @@ impl Row for ProblemRow<'_> {
 
 /// Those of the files among some records, by name.
 pub fn of_files(records: &[Record]) -> Vec<ProblemRow<'_>> {
-    let mut own: Vec<&Record> = records.iter().filter(|r| r.asked.is_from_file()).collect();
-    own.sort_by(|a, b| compare_problems(&a.asked.problem(), &b.asked.problem()));
-    let same = |a: &&Record, b: &&Record| a.asked.problem() == b.asked.problem();
-    own.chunk_by(same).filter_map(one).map(ProblemRow).collect()
+    let own = by_problem(records.iter().filter(|r| r.asked.is_from_file()));
+    own.iter()
+        .filter_map(|own| one(own))
+        .map(ProblemRow)
+        .collect()
 }
 
 fn one<'a>(own: &[&'a Record]) -> Option<&'a Record> {

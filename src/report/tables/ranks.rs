@@ -15,7 +15,7 @@ use crate::studies::analysis::scaling::Growth;
 use crate::studies::analysis::series::{Point, Series, Swept, series};
 use crate::studies::analysis::success::SuccessRow;
 use crate::studies::analysis::test_set::TestSet;
-use crate::studies::analysis::{problem_names, problems};
+use crate::studies::analysis::{by_problem, problem_names, problems};
 use crate::studies::convergence::orders::ErrorRow;
 use crate::studies::record::{Record, Step};
 use crate::studies::statistics::Timing;
@@ -313,10 +313,10 @@ pub fn rankings(records: &[Record]) -> Vec<RankingRow> {
 
 /// Points of all curves of solver error against work.
 pub fn curves(records: &[Record]) -> Vec<PointRow<'_>> {
-    let all = problems(records);
+    let names = problem_names(&problems(records));
     let mut rows = Vec::new();
-    for (problem, name) in all.iter().zip(problem_names(&all)) {
-        for own in series(records, problem) {
+    for (of_problem, name) in by_problem(records).iter().zip(names) {
+        for own in series(of_problem) {
             let Series { label, swept, .. } = own;
             rows.extend(own.points.into_iter().map(|point| PointRow {
                 problem: name.clone(),

@@ -43,7 +43,7 @@ fn size(record: &Record) -> Option<&ProblemSize> {
 
 /// Order of cells: problem, method, tolerance from coarse to fine.
 pub fn compare_cells(a: &Record, b: &Record) -> Ordering {
-    compare_problems(&a.asked.problem(), &b.asked.problem())
+    compare_problems(&a.asked, &b.asked)
         .then_with(|| compare_methods(&a.found.method, &b.found.method))
         .then(b.asked.tolerance.total_cmp(&a.asked.tolerance))
         .then_with(|| a.id.cmp(&b.id))
@@ -213,7 +213,8 @@ impl<'a> DeviationRow<'a> {
     pub fn all(records: &'a [Record]) -> Vec<Self> {
         let refined: Vec<Problem> = sequences(records).into_iter().flatten().collect();
         let own = records.iter().flat_map(|record| {
-            let several = refined.contains(&record.asked.problem());
+            let mut all = refined.iter();
+            let several = all.any(|own| own.is_same_problem(&record.asked));
             Self::of(record).filter(move |row| several || row.is_exact())
         });
         own.collect()

@@ -59,13 +59,14 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
     let exact = |r: &&Record| r.found.exact && has_defaults(&r.asked);
     let own: Vec<&Record> = records.iter().filter(exact).collect();
     let on = |mesh: &Problem| -> Vec<f64> {
-        let own = own.iter().filter(|r| r.asked.problem() == *mesh);
+        let own = own.iter().filter(|r| r.asked.is_same_problem(mesh));
         own.map(|r| r.asked.tolerance).collect()
     };
     let tolerance = common_tolerance(&meshes.iter().map(on).collect::<Vec<_>>())?;
     let mut finest = own;
     finest.retain(|r| {
-        r.asked.tolerance == tolerance && r.is_honest() && meshes.contains(&r.asked.problem())
+        let is_own = || meshes.iter().any(|mesh| mesh.is_same_problem(&r.asked));
+        r.asked.tolerance == tolerance && r.is_honest() && is_own()
     });
     finest.sort_by(|a, b| {
         compare_methods(&a.asked.method, &b.asked.method).then(a.asked.refine.cmp(&b.asked.refine))

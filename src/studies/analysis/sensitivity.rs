@@ -13,12 +13,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use stickslip_methods::OptionSpec;
 
-use super::{claims, compare_methods, compare_problems};
+use super::{claims, compare_methods, compare_problems, problems};
 use crate::run::choice::Choice;
 use crate::run::verdict::Verdict;
 use crate::studies::record::Record;
 use crate::studies::statistics::{larger, median};
-use crate::studies::task::Problem;
 
 /// Iterations over those at the default up to which a value counts as fast.
 pub const FAST: f64 = 2.0;
@@ -213,13 +212,11 @@ fn sweep(
         return None;
     }
     // Cells by problem and value.
-    let mut all: Vec<Problem> = settings.iter().map(|s| s.1.asked.problem()).collect();
-    all.sort_by(compare_problems);
-    all.dedup();
+    let all = problems(settings.iter().map(|s| s.1));
     let mut table: Vec<Vec<Option<&Record>>> = vec![vec![None; values.len()]; all.len()];
     for (value, record) in settings {
-        let own = record.asked.problem();
-        let row = all.binary_search_by(|p| compare_problems(p, &own)).ok()?;
+        let row = all.binary_search_by(|p| compare_problems(p, &record.asked));
+        let row = row.ok()?;
         let column = values.binary_search_by(|v| v.total_cmp(value)).ok()?;
         table[row][column] = Some(record);
     }

@@ -12,7 +12,6 @@ use crate::run::registry;
 use super::{compare_methods, has_defaults, method_name, method_time, published_times};
 use crate::studies::record::Record;
 use crate::studies::statistics::Timing;
-use crate::studies::task::Problem;
 
 /// What changes along a curve.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,14 +58,12 @@ pub struct Series<'a> {
     pub points: Vec<Point<'a>>,
 }
 
-/// The curves of one problem, in the order of the methods. A method with laws of its own has a curve along the tolerance with
+/// The curves of one problem, given its records, in the order of the methods. A method with laws of its own has a curve along the tolerance with
 /// its defaults, and curves along the option that takes most values, at the finest tolerance: options that follow from its
 /// value change with it, others tell curves apart.
-pub fn series<'a>(records: &'a [Record], problem: &Problem) -> Vec<Series<'a>> {
+pub fn series<'a>(of_problem: &[&'a Record]) -> Vec<Series<'a>> {
     let mut by_method: BTreeMap<&str, Vec<Point<'a>>> = BTreeMap::new();
-    // Names first: what is asked is copied to compare it.
-    let own = |r: &&Record| r.asked.case == problem.case && r.asked.problem() == *problem;
-    for record in records.iter().filter(own) {
+    for record in of_problem {
         if let Some(point) = point(record) {
             let own = by_method.entry(record.asked.method.as_str());
             own.or_default().push(point);
@@ -189,6 +186,7 @@ fn default(method: &str, option: &str) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::by_problem;
     use super::super::support::{record, timed};
     use super::*;
 
@@ -208,8 +206,7 @@ mod tests {
             approximate("penalty:normal=1e2,tangential=1e2", 1e-3, 2e-3),
             approximate("penalty", 1e-9, 1e-5),
         ];
-        let problem = records[0].asked.problem();
-        let found = series(&records, &problem);
+        let found = series(&by_problem(&records)[0]);
         let lines: Vec<(&str, &str, Vec<f64>)> = found
             .iter()
             .map(|s| {
@@ -243,7 +240,7 @@ mod tests {
             of("nitsche:gamma=16,theta=-1"),
             of("nitsche:theta=-1"),
         ];
-        let found = series(&records, &records[0].asked.problem());
+        let found = series(&by_problem(&records)[0]);
         let lines: Vec<(&str, &str, Vec<f64>)> = found
             .iter()
             .map(|s| {
@@ -266,6 +263,6 @@ mod tests {
         let mut wrong = timed(record("a", "latin", 1e-9), 3.0);
         wrong.found.verdict = crate::run::verdict::Verdict::FalseClaim;
         let records = [wrong];
-        assert!(series(&records, &records[0].asked.problem()).is_empty());
+        assert!(series(&by_problem(&records)[0]).is_empty());
     }
 }

@@ -9,7 +9,7 @@ use stickslip_methods::Tier;
 
 use super::{compare_methods, compare_problems, has_defaults, problems};
 use crate::studies::record::Record;
-use crate::studies::task::Problem;
+use crate::studies::task::{Asked, Problem};
 
 /// Records of all methods on the problems that all of them were given, asked for one tier.
 #[derive(Debug, Clone)]
@@ -35,10 +35,10 @@ impl<'a> TestSet<'a> {
         methods.sort_by(|a, b| compare_methods(a, b));
         methods.dedup();
         let all = problems(records);
-        let place = |problem: &Problem| all.binary_search_by(|p| compare_problems(p, problem));
+        let place = |own: &Asked| all.binary_search_by(|p| compare_problems(p, own));
         let mut by_place: BTreeMap<(usize, &str), &Record> = BTreeMap::new();
         for record in own {
-            if let Ok(place) = place(&record.asked.problem()) {
+            if let Ok(place) = place(&record.asked) {
                 let key = (place, record.found.method.as_str());
                 by_place.entry(key).or_insert(record);
             }
