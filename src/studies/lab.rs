@@ -14,7 +14,7 @@ use crate::run::verdict::Verdict;
 use crate::studies::measure::{Bench, MeasureError, Repeats, in_turn};
 use crate::studies::record::{Found, Limits, Origin, Record, Times};
 use crate::studies::records::{Records, RecordsError};
-use crate::studies::task::{Asked, Matter, Task};
+use crate::studies::task::{Asked, Matter, Task, share_traction};
 use crate::studies::worker::{Worker, WorkerError, share};
 
 /// What makes the program a worker that measures tasks.
@@ -217,7 +217,8 @@ impl Lab<'_> {
             let own = known.get(&task.id());
             own.is_some_and(|record| self.is_answered(task, record, &origin))
         };
-        let left: Vec<&Task> = tasks.iter().filter(|task| !answered(task)).collect();
+        let left = tasks.iter().filter(|task| !answered(task));
+        let left: Vec<Task> = left.cloned().collect();
         progress.plan(left.len());
         let done = Mutex::new(0);
         let worker = || Worker::new(self.program, WORK, self.limits);
@@ -321,10 +322,9 @@ impl Lab<'_> {
     }
 }
 
-/// Tasks of one problem and accuracy; neighbouring groups have the same body, which has the traction operator where one of
-/// them needs it.
-fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<Task>> {
-    let key = |task: &&Task| {
+/// Tasks of one problem and accuracy; neighbouring groups have the same body.
+fn in_groups(mut tasks: Vec<Task>) -> Vec<Vec<Task>> {
+    let key = |task: &Task| {
         let asked = task.asked.clone();
         let friction: Vec<u64> = asked.friction.iter().map(|mu| mu.to_bits()).collect();
         let finer = asked.finer.map(f64::to_bits);
@@ -338,23 +338,15 @@ fn in_groups(mut tasks: Vec<&Task>) -> Vec<Vec<Task>> {
         );
         (body, friction, path, asked.tolerance.to_bits(), finer)
     };
-    let needs_traction = |task: &&Task| {
+    let needs_traction = |task: &Task| {
         // Programs need none, and their files need not be read for that.
         let choice = (!is_outside(&task.asked.method)).then(|| Choice::parse(&task.asked.method));
         choice.is_some_and(|choice| choice.is_ok_and(|own| own.needs_traction()))
     };
     tasks.sort_by_cached_key(key);
-    let mut groups = Vec::new();
-    for of_body in tasks.chunk_by(|a, b| a.asked.body() == b.asked.body()) {
-        let traction = of_body.iter().any(needs_traction);
-        let with = |task: &&Task| Task {
-            traction,
-            ..(*task).clone()
-        };
-        let own = of_body.chunk_by(|a, b| key(a) == key(b));
-        groups.extend(own.map(|group| group.iter().map(with).collect()));
-    }
-    groups
+    share_traction(&mut tasks, needs_traction);
+    let groups = tasks.chunk_by(|a, b| key(a) == key(b));
+    groups.map(<[Task]>::to_vec).collect()
 }
 
 /// Why there is no answer of the kind asked for.

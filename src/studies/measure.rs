@@ -23,7 +23,7 @@ use crate::studies::memory;
 use crate::studies::record::{Found, Record, Spent, Step};
 use crate::studies::stress::check::check;
 use crate::studies::stress::twin::change;
-use crate::studies::task::{Asked, Matter, Task};
+use crate::studies::task::{Asked, Matter, Task, share_traction};
 use answer::AsItIs;
 use looks::{Seen, ask};
 use reference::solver_error;
@@ -130,42 +130,39 @@ pub fn here(
     let mut answers = Vec::new();
     let by_name = |name: &str| choices.iter().find(|choice| choice.argument() == name);
     let method = |task: &Task| by_name(&task.asked.method);
-    for of_body in tasks.chunk_by(|a, b| a.asked.body() == b.asked.body()) {
-        let needs = |task| method(task).is_some_and(Choice::needs_traction);
-        let traction = of_body.iter().any(needs);
-        for alike in of_body.chunk_by(|a, b| a.asked.is_same_problem(&b.asked)) {
-            let first = Task {
-                traction,
-                ..alike[0].clone()
+    let mut tasks = tasks.to_vec();
+    share_traction(&mut tasks, |task| {
+        method(task).is_some_and(Choice::needs_traction)
+    });
+    for alike in tasks.chunk_by(|a, b| a.asked.is_same_problem(&b.asked)) {
+        let first = &alike[0];
+        let scene = bench.scene(first)?;
+        each(&scene, first);
+        let run = |task: &Task| {
+            let Some(choice) = method(task) else {
+                return Err(MeasureError::Method(task.asked.method.clone()));
             };
-            let scene = bench.scene(&first)?;
-            each(&scene, &first);
-            let run = |task: &Task| {
-                let Some(choice) = method(task) else {
-                    return Err(MeasureError::Method(task.asked.method.clone()));
-                };
-                let answer = measure(&scene, task, choice);
-                progress.done(&told(&task.asked, &choice.label));
-                answer
-            };
-            // One after the other unless asked otherwise, so that times mean something.
-            let own: Result<Vec<Answer>, MeasureError> = match jobs {
-                1 => alike.iter().map(run).collect(),
-                _ => pool.install(|| alike.par_iter().map(run).collect()),
-            };
-            let mut own = own?;
-            if let Some(repeats) = repeats {
-                let honest = own.iter_mut().filter(|own| own.record.is_honest());
-                let honest: Vec<&mut Answer> = honest.collect();
-                let methods = honest.iter().map(|own| own.record.asked.method.as_str());
-                let methods: Vec<Choice> = methods.filter_map(by_name).cloned().collect();
-                let times = in_turn(&scene, &first, &methods, repeats);
-                for (own, times) in honest.into_iter().zip(times) {
-                    own.record = own.record.clone().retimed(times);
-                }
+            let answer = measure(&scene, task, choice);
+            progress.done(&told(&task.asked, &choice.label));
+            answer
+        };
+        // One after the other unless asked otherwise, so that times mean something.
+        let own: Result<Vec<Answer>, MeasureError> = match jobs {
+            1 => alike.iter().map(run).collect(),
+            _ => pool.install(|| alike.par_iter().map(run).collect()),
+        };
+        let mut own = own?;
+        if let Some(repeats) = repeats {
+            let honest = own.iter_mut().filter(|own| own.record.is_honest());
+            let honest: Vec<&mut Answer> = honest.collect();
+            let methods = honest.iter().map(|own| own.record.asked.method.as_str());
+            let methods: Vec<Choice> = methods.filter_map(by_name).cloned().collect();
+            let times = in_turn(&scene, first, &methods, repeats);
+            for (own, times) in honest.into_iter().zip(times) {
+                own.record = own.record.clone().retimed(times);
             }
-            answers.extend(own);
         }
+        answers.extend(own);
     }
     Ok(answers)
 }

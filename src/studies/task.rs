@@ -288,6 +288,14 @@ impl Task {
     }
 }
 
+/// Gives neighbouring tasks on one body the traction operator where one of them needs it.
+pub fn share_traction(tasks: &mut [Task], needs: impl Fn(&Task) -> bool) {
+    for of_body in tasks.chunk_by_mut(|a, b| a.asked.body() == b.asked.body()) {
+        let traction = of_body.iter().any(&needs);
+        of_body.iter_mut().for_each(|task| task.traction = traction);
+    }
+}
+
 impl Matter {
     /// That of a case.
     pub fn of(case: &Case) -> Arc<Self> {

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
 use rayon::ThreadPoolBuildError;
@@ -163,11 +164,15 @@ pub struct Reference {
 /// What was tried so far on one problem, by method; none where it did not converge.
 pub type References = BTreeMap<&'static str, Option<Reference>>;
 
+/// What is solved, with what acts on it.
+enum Setting<'a> {
+    Body(&'a Discretised, Loading<'a>),
+    Algebra(&'a ProblemFile, &'a OperatorSize),
+}
+
 /// What a task is solved on.
 pub struct Scene<'a> {
-    subject: &'a Subject,
-    /// What acts on the body; none of bare algebra.
-    loading: Option<Loading<'a>>,
+    setting: Setting<'a>,
     /// The contact system with the friction of the task.
     pub system: &'a ContactSystem,
     /// Peak of memory while the body was discretised and factored [MB].
@@ -213,16 +218,18 @@ impl Bench {
             },
         };
         let known = posed.insert(known);
-        let (own, loading) = match &*subject {
-            Subject::Body(own) => (None, Some(Loading::new(&own.body, &own.case, asked.mu())?)),
-            Subject::Algebra(file) => (Some(&file.0.system), None),
+        let (own, setting) = match &*subject {
+            Subject::Body(own) => {
+                let loading = Loading::new(&own.body, &own.case, asked.mu())?;
+                (None, Setting::Body(own, loading))
+            }
+            Subject::Algebra(file) => (Some(&file.0.system), Setting::Algebra(&file.0, &file.1)),
         };
         let Some(system) = known.system.as_ref().or(own) else {
             return Err(MeasureError::File("a problem without a system".into()));
         };
         Ok(Scene {
-            subject,
-            loading,
+            setting,
             system,
             peak_mb: *peak_mb,
             references: &known.references,
@@ -249,33 +256,18 @@ impl Bench {
 impl Kept {
     fn new(task: &Task) -> Result<Self, MeasureError> {
         let asked = &task.asked;
+        let view = asked.view;
         let subject = match &*task.matter {
-            Matter::Case { .. } | Matter::Given(_) => {
-                let mut case = case_of(task)?;
-                for crack in &mut case.cracks {
-                    if let Some(name) = &asked.space {
-                        let space = ContactSpace::named(name);
-                        crack.contact = space.ok_or_else(|| MeasureError::Space(name.clone()))?;
-                    }
-                    if let Some(name) = &asked.tip {
-                        let tip = tip_named(name);
-                        crack.tip = tip.ok_or_else(|| MeasureError::Tip(name.clone()))?;
-                    }
-                }
-                warm_up(case.model.dim());
-                memory::reset_peak();
-                let needs = needs(&case, task);
-                let body = Body::new(&case, asked.refine, needs)?;
-                // What fails here fails in every method, whose verdict it is.
-                let _told_by_methods = body.elastic.factorise();
-                Subject::Body(Box::new(Discretised {
-                    increments: case.path.increments,
-                    refine: asked.refine,
-                    case,
-                    needs,
-                    body,
-                }))
+            Matter::Case { file, text } => {
+                let seen = match view {
+                    None => text.clone(),
+                    Some(view) => view
+                        .apply(text)
+                        .ok_or_else(|| MeasureError::View(view.name()))?,
+                };
+                Subject::of_case(case::parse(file, seen)?, task)?
             }
+            Matter::Given(case) => Subject::of_case((**case).clone(), task)?,
             Matter::File(path) => {
                 let gone = |e| format!("cannot read `{}`: {e}", path.display());
                 let bytes = fs::read(path).map_err(|e| MeasureError::Gone(gone(e)))?;
@@ -283,13 +275,10 @@ impl Kept {
                     let what = format!("`{}` has changed since it was planned", path.display());
                     return Err(MeasureError::Gone(what));
                 }
-                let problem = ProblemFile::from_bytes(path, bytes, &asked.case);
-                Subject::of(problem.map_err(|e| MeasureError::File(e.reason(path)))?)?
+                Subject::of_file(path, bytes, &asked.case)?
             }
             Matter::Bytes(bytes) => {
-                let path = asked.case.as_ref();
-                let problem = ProblemFile::from_bytes(path, bytes.clone(), &asked.case);
-                Subject::of(problem.map_err(|e| MeasureError::File(e.reason(path)))?)?
+                Subject::of_file(asked.case.as_ref(), bytes.clone(), &asked.case)?
             }
         };
         Ok(Self {
@@ -298,23 +287,6 @@ impl Kept {
             peak_mb: memory::peak_mb(),
             posed: None,
         })
-    }
-}
-
-/// The case of a task as it was before the task changed it, seen the way that is asked for.
-fn case_of(task: &Task) -> Result<Case, MeasureError> {
-    let view = task.asked.view;
-    match (&*task.matter, view) {
-        (Matter::Case { file, text }, None) => Ok(case::parse(file, text.as_str())?),
-        (Matter::Case { file, text }, Some(view)) => {
-            let seen = view.apply(text);
-            let seen = seen.ok_or_else(|| MeasureError::View(view.name()))?;
-            Ok(case::parse(file, seen)?)
-        }
-        (Matter::Given(case), _) => Ok((**case).clone()),
-        (Matter::File(_) | Matter::Bytes(_), _) => {
-            unreachable!("a problem of a file has no case")
-        }
     }
 }
 
@@ -330,7 +302,38 @@ fn needs(case: &Case, task: &Task) -> Needs {
 }
 
 impl Subject {
-    fn of(problem: ProblemFile) -> Result<Self, MeasureError> {
+    /// A case, discretised with the contact space and tips of a task.
+    fn of_case(mut case: Case, task: &Task) -> Result<Self, MeasureError> {
+        let asked = &task.asked;
+        for crack in &mut case.cracks {
+            if let Some(name) = &asked.space {
+                let space = ContactSpace::named(name);
+                crack.contact = space.ok_or_else(|| MeasureError::Space(name.clone()))?;
+            }
+            if let Some(name) = &asked.tip {
+                let tip = tip_named(name);
+                crack.tip = tip.ok_or_else(|| MeasureError::Tip(name.clone()))?;
+            }
+        }
+        warm_up(case.model.dim());
+        memory::reset_peak();
+        let needs = needs(&case, task);
+        let body = Body::new(&case, asked.refine, needs)?;
+        // What fails here fails in every method, whose verdict it is.
+        let _told_by_methods = body.elastic.factorise();
+        Ok(Self::Body(Box::new(Discretised {
+            increments: case.path.increments,
+            refine: asked.refine,
+            case,
+            needs,
+            body,
+        })))
+    }
+
+    /// The problem of a file.
+    fn of_file(path: &Path, bytes: Vec<u8>, name: &str) -> Result<Self, MeasureError> {
+        let problem = ProblemFile::from_bytes(path, bytes, name);
+        let problem = problem.map_err(|e| MeasureError::File(e.reason(path)))?;
         let operator = problem.operator()?;
         Ok(Self::Algebra(Box::new((problem, operator))))
     }
@@ -365,10 +368,9 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Scene<'_> {
     /// The system with what acts on it.
     pub fn posed(&self) -> Posed<'_> {
-        let loads = match (&self.loading, self.subject) {
-            (Some(loading), _) => Loads::Body(loading),
-            (None, Subject::Algebra(file)) => Loads::Algebra(&file.0.loads),
-            (None, Subject::Body(_)) => unreachable!("a body has loads"),
+        let loads = match &self.setting {
+            Setting::Body(_, loading) => Loads::Body(loading),
+            Setting::Algebra(file, _) => Loads::Algebra(&file.loads),
         };
         Posed {
             system: self.system,
@@ -378,9 +380,9 @@ impl Scene<'_> {
 
     /// The case and what acts on its body; none of bare algebra.
     pub fn body(&self) -> Option<(&Case, &Loading<'_>)> {
-        match (self.subject, &self.loading) {
-            (Subject::Body(own), Some(loading)) => Some((&own.case, loading)),
-            _ => None,
+        match &self.setting {
+            Setting::Body(own, loading) => Some((&own.case, loading)),
+            Setting::Algebra(..) => None,
         }
     }
 
@@ -406,48 +408,48 @@ impl Scene<'_> {
 
     /// Mesh and contact space, as tables name them.
     pub(super) fn labels(&self) -> (String, String) {
-        match self.subject {
-            Subject::Body(own) => (own.body.label.clone(), own.body.space.clone()),
-            Subject::Algebra(file) => (file.0.kind.to_owned(), FROM_FILE.to_owned()),
+        match &self.setting {
+            Setting::Body(own, _) => (own.body.label.clone(), own.body.space.clone()),
+            Setting::Algebra(file, _) => (file.kind.to_owned(), FROM_FILE.to_owned()),
         }
     }
 
     /// Largest distance of neighbouring grid lines [m]; 0 of bare algebra.
     pub(super) fn cell_size(&self) -> f64 {
-        match self.subject {
-            Subject::Body(own) => own.case.mesh.grid.refined(own.refine).cell_size(),
-            Subject::Algebra(_) => 0.0,
+        match &self.setting {
+            Setting::Body(own, _) => own.case.mesh.grid.refined(own.refine).cell_size(),
+            Setting::Algebra(..) => 0.0,
         }
     }
 
     pub(super) fn uniform_stress(&self) -> f64 {
-        match self.subject {
-            Subject::Body(own) => own.body.checks.uniform,
-            Subject::Algebra(_) => f64::NAN,
+        match &self.setting {
+            Setting::Body(own, _) => own.body.checks.uniform,
+            Setting::Algebra(..) => f64::NAN,
         }
     }
 
     /// Distance of reactions from the known ones of bare algebra.
     pub(super) fn deviations(&self, reactions: &[f64]) -> Vec<Deviation> {
-        match self.subject {
-            Subject::Body(_) => Vec::new(),
-            Subject::Algebra(file) => file.0.deviations(reactions),
+        match &self.setting {
+            Setting::Body(..) => Vec::new(),
+            Setting::Algebra(file, _) => file.deviations(reactions),
         }
     }
 
     /// The operator of bare algebra.
     pub(super) fn operator(&self) -> Option<OperatorSize> {
-        match self.subject {
-            Subject::Body(_) => None,
-            Subject::Algebra(file) => Some(file.1.clone()),
+        match &self.setting {
+            Setting::Body(..) => None,
+            Setting::Algebra(_, operator) => Some((*operator).clone()),
         }
     }
 
     /// Seconds to set up the body and to assemble its stiffness, with the traction operator where it is needed.
     pub(super) fn setup(&self, traction: bool) -> [f64; 2] {
-        let setup = match self.subject {
-            Subject::Body(own) => own.body.setup,
-            Subject::Algebra(file) => file.0.setup,
+        let setup = match &self.setting {
+            Setting::Body(own, _) => own.body.setup,
+            Setting::Algebra(file, _) => file.setup,
         };
         let owed_s = if traction { setup.traction_s } else { 0.0 };
         [setup.setup_s + owed_s, setup.assembly_s]
