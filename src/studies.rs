@@ -16,6 +16,7 @@ pub mod followed;
 pub mod lab;
 pub mod measure;
 pub mod memory;
+pub mod origin;
 pub mod paper;
 pub mod plan;
 pub mod record;

@@ -16,7 +16,6 @@ use crate::report::{Claim, Plan, page};
 use crate::run::choice::{Choice, ChoiceError};
 use crate::run::outside::{OUTSIDE, SECONDS};
 use crate::run::provenance::Provenance;
-use crate::run::registry::methods;
 use crate::studies::cases::Settings;
 use crate::studies::task::digest_of_bytes;
 
@@ -170,8 +169,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
 /// The methods named, or all of them with their defaults.
 pub fn methods_or_all(named: &[String], limit: &ProgramLimit) -> Result<Vec<Choice>, CliError> {
     if named.is_empty() {
-        let all = methods().iter().map(|method| Choice::parse(method.name));
-        return Ok(all.collect::<Result<_, _>>()?);
+        return Ok(Choice::all()?);
     }
     let chosen = named.iter().map(|argument| limit.parse(argument));
     let chosen = chosen.collect::<Result<Vec<_>, _>>()?;

@@ -69,9 +69,6 @@ pub enum CliError {
     /// Methods given beside a sweep.
     #[error("--method is for cases and folders: a sweep file names its own methods")]
     MethodOfSweep,
-    /// What cannot be asked.
-    #[error("{0}")]
-    Question(String),
     /// A folder of records.
     #[error(transparent)]
     Records(#[from] RecordsError),

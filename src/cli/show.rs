@@ -21,27 +21,9 @@ pub struct Arguments {
 
 /// Prints one method or case, a manual, or all names; writes the page of a folder.
 pub fn run(Arguments { name }: Arguments) -> Result<bool, CliError> {
-    match name {
-        None => say(format_args!("{}", list_text().trim_end())),
-        // Names come first: `./methods` is the folder.
-        Some(name) if Path::new(&name).is_dir() && !is_name(&name) => {
-            let bytes = page::write(Path::new(&name))?;
-            let page = Path::new(&name).join(page::FILE);
-            say(format_args!(
-                "{}: {:.1} MB",
-                page.display(),
-                bytes as f64 / 1e6
-            ));
-        }
-        Some(name) => say(format_args!("{}", show_text(&name)?.trim_end())),
-    }
+    let text = name.map_or_else(|| Ok(list_text()), |name| show_text(&name))?;
+    say(format_args!("{}", text.trim_end()));
     Ok(true)
-}
-
-/// Whether this is the name of a manual, a method or a case.
-fn is_name(name: &str) -> bool {
-    let is_case = shipped::CASES.iter().any(|case| case.0 == name);
-    ["methods", "schema"].contains(&name) || is_case || method(name).is_some()
 }
 
 fn list_text() -> String {
@@ -73,27 +55,34 @@ fn list_text() -> String {
     text
 }
 
+/// What is known of a name; names come before files and folders, so that `./methods` is a folder.
 fn show_text(name: &str) -> Result<String, CliError> {
-    match name {
-        "methods" => return Ok(method_manual::all()),
-        "schema" => return Ok(schema::manual()),
-        _ => {}
+    let path = Path::new(name);
+    if name == "methods" {
+        Ok(method_manual::all())
+    } else if name == "schema" {
+        Ok(schema::manual())
+    } else if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
+        Ok((*text).to_owned())
+    } else if let Some(method) = method(name) {
+        Ok(method_manual::page(method))
+    } else if path.is_dir() {
+        let megabytes = page::write(path)? as f64 / 1e6;
+        Ok(format!(
+            "{}: {megabytes:.1} MB",
+            path.join(page::FILE).display()
+        ))
+    } else if path.exists() {
+        Ok(case::read(name)?.source)
+    } else {
+        let methods = methods().iter().map(|own| own.name);
+        let known: Vec<&str> = methods
+            .chain(shipped::CASES.iter().map(|own| own.0))
+            .collect();
+        Err(CliError::Unknown {
+            what: "method or case",
+            name: name.into(),
+            known: known.join(", "),
+        })
     }
-    if let Some((_, text)) = shipped::CASES.iter().find(|(own, _)| *own == name) {
-        return Ok((*text).to_owned());
-    }
-    if Path::new(name).exists() {
-        return Ok(case::read(name)?.source);
-    }
-    let method = method(name).ok_or_else(|| CliError::Unknown {
-        what: "method or case",
-        name: name.into(),
-        known: methods()
-            .iter()
-            .map(|m| m.name)
-            .chain(shipped::CASES.iter().map(|c| c.0))
-            .collect::<Vec<_>>()
-            .join(", "),
-    })?;
-    Ok(method_manual::page(method))
 }

@@ -19,7 +19,7 @@ use crate::studies::cases::{Fields, Settings, Why};
 use crate::studies::exchange::problem_file::ProblemFile;
 use crate::studies::lab::unmeasured;
 use crate::studies::measure::{Bench, MeasureError, Repeats, RunError, here};
-use crate::studies::record::Origin;
+use crate::studies::origin::Origin;
 use crate::studies::results::add;
 use crate::studies::rows::{Results, RunKey};
 use crate::studies::several::mark_several;

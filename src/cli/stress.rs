@@ -8,7 +8,8 @@ use super::study::{STOP, shard, watch_for_interruption};
 use crate::files::claim::COMMAND;
 use crate::report::{Bundle, Claim, Plan, Provenance, page, stress as report};
 use crate::studies::lab::{Inside, Lab, Shard, Workers};
-use crate::studies::record::{Limits, Record};
+use crate::studies::origin::Limits;
+use crate::studies::record::Record;
 use crate::studies::records::Records;
 use crate::studies::stress::find::{Effort, find};
 use crate::studies::stress::suite::{self, Suite};
@@ -80,13 +81,12 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         }
     };
     let own = SCENES.into_iter().filter(|(f, ..)| wanted(f));
-    let shard = arguments.shard.unwrap_or(Shard::ALL);
     let suite = Suite {
         seed: arguments.seed,
         scenes: own
             .map(|(f, few, many)| (f, of(f, count(few, many))))
             .collect(),
-        shard: (shard.number as u64, shard.of as u64),
+        shard: arguments.shard.unwrap_or(Shard::ALL),
     };
     let program = std::env::current_exe().map_err(CliError::Program)?;
     watch_for_interruption()?;
@@ -148,12 +148,9 @@ fn one(arguments: &Arguments, family: Family, number: u64) -> Result<bool, CliEr
     let findings = find(&mut Inside::default(), &[scene], Effort::All)?;
     for finding in &findings {
         for Record { found, .. } in &finding.records {
-            let cause = found
-                .why
-                .as_ref()
-                .map_or("", |why| why.diagnosis.cause.name());
             let iterations = found.sum(|step| step.iterations);
             let (method, verdict) = (&found.method, found.verdict.to_string());
+            let cause = found.cause();
             say(format_args!(
                 "{method:22} {verdict:24} {iterations:6} {cause}"
             ));

@@ -15,8 +15,9 @@ use crate::run::choice::Choice;
 use crate::studies::analysis::mark_several;
 use crate::studies::lab::{Lab, Shard};
 use crate::studies::memory::is_short;
+use crate::studies::origin::{Limits, Origin};
 use crate::studies::plan::Plan;
-use crate::studies::record::{Limits, Origin, Record};
+use crate::studies::record::Record;
 use crate::studies::records::Records;
 use crate::studies::sources::Problem;
 use crate::studies::sources::files::FileProblem;
@@ -98,7 +99,7 @@ fn planned(what: &[PathBuf], method: &[String]) -> Result<Plan, CliError> {
         };
     }
     let choices = match method {
-        [] => Choice::all().map_err(|e| CliError::Question(e.to_string()))?,
+        [] => Choice::all()?,
         named => (named.iter().map(|own| Choice::parse(own))).collect::<Result<_, _>>()?,
     };
     let (folders, cases): (Vec<&PathBuf>, Vec<&PathBuf>) = what.iter().partition(|p| p.is_dir());

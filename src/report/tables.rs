@@ -21,7 +21,7 @@ use sweep::{CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow};
 use super::table::{self, Description, Row};
 use super::{Bundle, ReportError};
 use crate::studies::analysis::accuracy::refinements;
-use crate::studies::analysis::causes::{AtlasRow, StoppingRow, atlas, stopping};
+use crate::studies::analysis::causes::{CauseRow, StoppingRow, causes, stopping};
 use crate::studies::analysis::scaling::{Growth, growth};
 use crate::studies::analysis::sensitivity::sweeps;
 use crate::studies::analysis::success::{SuccessRow, success};
@@ -163,7 +163,7 @@ pub fn of_study() -> Vec<OfStudy> {
         table::<RankingRow>(|to, of, caveat| add(to, &ranks::rankings(of), caveat)),
         table::<Growth>(|to, of, caveat| add(to, &growth(of), caveat)),
         table::<SuccessRow>(|to, of, caveat| add(to, &success(of), caveat)),
-        table::<AtlasRow>(|to, of, caveat| add(to, &atlas(of), caveat)),
+        table::<CauseRow>(|to, of, caveat| add(to, &causes(of), caveat)),
         table::<WhyRow>(|to, of, caveat| add(to, &WhyRow::all(of), caveat)),
         table::<StoppingRow>(|to, of, caveat| add(to, &stopping(of), caveat)),
         table::<WindowRow>(|to, of, caveat| add(to, &WindowRow::of(&sweeps(of)), caveat)),

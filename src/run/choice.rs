@@ -153,9 +153,12 @@ impl Choice {
     }
 
     /// Every registered method with its defaults.
-    pub fn all() -> Result<Vec<Self>, OptionError> {
+    ///
+    /// # Errors
+    /// A method that refuses its own defaults.
+    pub fn all() -> Result<Vec<Self>, ChoiceError> {
         let all = methods().iter();
-        all.map(|method| Choice::new(method, &[])).collect()
+        all.map(|method| Choice::parse(method.name)).collect()
     }
 }
 

@@ -20,9 +20,7 @@ use crate::run::choice::Choice;
 use crate::run::progress::Progress;
 use crate::run::verdict::Accuracy;
 use crate::studies::axes::{Axes, Subject, named, space_name, tip_name};
-use crate::studies::measure::Bench;
-use crate::studies::measure::RunError;
-use crate::studies::measure::here;
+use crate::studies::measure::{Bench, RunError, here};
 use crate::studies::task::Looks;
 use crate::studies::tips::{Regularity, regularity};
 

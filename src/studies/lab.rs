@@ -1,8 +1,7 @@
 //! Has tasks measured: in this process, or each in a worker under limits, its record kept as soon as it is there.
 
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +11,8 @@ use crate::run::outside::Program;
 use crate::run::progress::Progress;
 use crate::run::verdict::Verdict;
 use crate::studies::measure::{Bench, MeasureError, Repeats, in_turn};
-use crate::studies::record::{Found, Limits, Origin, Record, Times};
+use crate::studies::origin::{Limits, Origin};
+use crate::studies::record::{Found, Record, Times};
 use crate::studies::records::{Records, RecordsError};
 use crate::studies::task::{Asked, Matter, Task, share_traction};
 use crate::studies::worker::{Worker, WorkerError, share};
@@ -220,7 +220,7 @@ impl Lab<'_> {
         let left = tasks.iter().filter(|task| !answered(task));
         let left: Vec<Task> = left.cloned().collect();
         progress.plan(left.len());
-        let done = Mutex::new(0);
+        let done = AtomicUsize::new(0);
         let worker = || Worker::new(self.program, WORK, self.limits);
         share(
             &in_groups(left),
@@ -237,7 +237,7 @@ impl Lab<'_> {
                     // None until they are taken in turn, so that a run that ends here goes on with this task.
                     let spent = record.spent.take();
                     records.append(&record)?;
-                    *done.lock().unwrap_or_else(|e| e.into_inner()) += 1;
+                    done.fetch_add(1, Ordering::SeqCst);
                     progress.done(&line(&record));
                     if self.repeats().is_some() && record.is_honest() {
                         honest.push((task, Record { spent, ..record }));
@@ -249,7 +249,7 @@ impl Lab<'_> {
                 Ok::<(), LabError>(())
             },
         )?;
-        Ok(done.into_inner().unwrap_or_else(|e| e.into_inner()))
+        Ok(done.into_inner())
     }
 
     fn one(
@@ -329,13 +329,8 @@ fn in_groups(mut tasks: Vec<Task>) -> Vec<Vec<Task>> {
         let friction: Vec<u64> = asked.friction.iter().map(|mu| mu.to_bits()).collect();
         let finer = asked.finer.map(f64::to_bits);
         let path = (asked.increments, asked.cold);
-        let body = (
-            asked.case,
-            asked.digest,
-            asked.refine,
-            asked.space,
-            asked.tip,
-        );
+        let (case, cracks) = ((asked.case, asked.digest), (asked.space, asked.tip));
+        let body = (case, asked.refine, cracks);
         (body, friction, path, asked.tolerance.to_bits(), finer)
     };
     let needs_traction = |task: &Task| {

@@ -3,9 +3,6 @@
 //! What was found is a function of the task and the program alone; what was spent belongs to the machine and the moment.
 //! The two are kept apart, so that a rerun can be compared bit by bit. Numbers that do not exist are NaN, in a file `null`.
 
-use std::fmt;
-use std::sync::OnceLock;
-
 use serde::{Deserialize, Serialize};
 use stickslip_methods::{PointStatus, Residuals};
 
@@ -14,10 +11,10 @@ use crate::model::errors::Deviation;
 use crate::model::quantities::Quantity;
 use crate::model::snapshot::Snapshot;
 use crate::run::judged::{JudgedIncrement, Seconds, Work};
-use crate::run::provenance::Provenance;
 use crate::run::verdict::Verdict;
 use crate::studies::exchange::problem_file::OperatorSize;
 use crate::studies::followed::Value;
+use crate::studies::origin::{Limits, Origin};
 use crate::studies::statistics::{Timing, larger};
 use crate::studies::stress::check::Check;
 use crate::studies::stress::twin::Change;
@@ -89,85 +86,6 @@ impl Record {
             other => other.is_honest() && found.violation().is_finite(),
         };
         !found.increments.is_empty() && all.all(agrees)
-    }
-}
-
-/// Limits on a task.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// Wall-clock time with set-up and repeats [s].
-    pub seconds: f64,
-    /// Address space of the process [MB]; none: unlimited.
-    pub memory_mb: Option<u64>,
-}
-
-/// Program and machine.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Origin {
-    /// Version of this crate.
-    pub version: String,
-    /// Git commit of the sources, or `unknown`.
-    pub commit: String,
-    /// Whether the sources differed from it: `true`, `false` or `unknown`.
-    pub dirty: String,
-    /// Digest of the sources, which a commit with further changes does not tell.
-    pub sources: String,
-    /// Compiler.
-    pub rustc: String,
-    /// `debug` or `release`.
-    pub profile: String,
-    /// Operating system and processor model.
-    pub machine: String,
-}
-
-impl Origin {
-    /// This program on this machine; found out once.
-    pub fn here() -> Self {
-        static HERE: OnceLock<Origin> = OnceLock::new();
-        HERE.get_or_init(Self::collect).clone()
-    }
-
-    fn collect() -> Self {
-        let build = Provenance::collect(1);
-        Self {
-            version: build.version,
-            commit: build.commit,
-            dirty: build.dirty,
-            sources: env!("STICKSLIP_BUILD_SOURCES").into(),
-            rustc: build.rustc,
-            profile: build.profile,
-            machine: format!("{}, {}", build.os, build.cpu),
-        }
-    }
-
-    /// Names and values of all parts.
-    fn parts(&self) -> [(&'static str, &str); 7] {
-        [
-            ("version", &self.version),
-            ("commit", &self.commit),
-            ("uncommitted changes", &self.dirty),
-            ("sources", &self.sources),
-            ("compiler", &self.rustc),
-            ("profile", &self.profile),
-            ("machine", &self.machine),
-        ]
-    }
-
-    /// Whether the same program was built there: what it finds are the same bits.
-    pub fn same_program(&self, other: &Self) -> bool {
-        let program = |own: &Self| Self {
-            machine: String::new(),
-            ..own.clone()
-        };
-        program(self) == program(other)
-    }
-}
-
-impl fmt::Display for Origin {
-    /// `version 0.1.0, commit …, machine …`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let parts = self.parts().map(|(name, value)| format!("{name} {value}"));
-        f.write_str(&parts.join(", "))
     }
 }
 
@@ -466,6 +384,12 @@ impl Record {
 }
 
 impl Found {
+    /// Why it gave up, as tables name it; empty where nobody asked.
+    pub fn cause(&self) -> &'static str {
+        let why = self.why.as_ref();
+        why.map_or("", |why| why.diagnosis.cause.name())
+    }
+
     /// A task of which only the verdict is known.
     pub fn only(verdict: Verdict, method: String, exact: bool) -> Self {
         Self {

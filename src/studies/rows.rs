@@ -1,7 +1,6 @@
 //! What a run leaves behind: the rows of the tables and the fields of the pictures.
 //!
-//! Runs fill these types, the report writes them. Every row type is one CSV file, its field names are the column names
-//! (`docs/schema.md`).
+//! Runs fill these types, the report writes them, each as one CSV file (`docs/schema.md`).
 
 use std::cmp::Ordering;
 

@@ -135,31 +135,18 @@ impl Asked {
 
     /// Whether methods are given the same: [`Asked::problem`] of both, compared where they stand.
     pub fn is_same_problem(&self, other: &Self) -> bool {
-        let Self {
-            case,
-            digest,
-            refine,
-            space,
-            tip,
-            friction,
-            increments,
-            cold,
-            view,
-            method: _,
-            tolerance: _,
-            finer: _,
-            program: _,
-        } = self;
-        (case, digest, refine, space, tip)
-            == (
-                &other.case,
-                &other.digest,
-                &other.refine,
-                &other.space,
-                &other.tip,
+        fn key(own: &Asked) -> impl PartialEq + '_ {
+            let path = (&own.friction, own.increments, own.cold, own.view);
+            (
+                &own.case,
+                &own.digest,
+                own.refine,
+                &own.space,
+                &own.tip,
+                path,
             )
-            && (friction, increments, cold, view)
-                == (&other.friction, &other.increments, &other.cold, &other.view)
+        }
+        key(self) == key(other)
     }
 
     /// The same whatever the mesh.
@@ -419,6 +406,8 @@ mod tests {
         for change in changes {
             let mut changed = asked();
             change(&mut changed);
+            let same = changed.problem() == asked().problem();
+            assert_eq!(changed.is_same_problem(&asked()), same, "{changed:?}");
             ids.push(changed.id());
         }
         ids.sort();

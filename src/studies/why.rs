@@ -1,4 +1,4 @@
-//! Failure atlas: why a run gave up, decided by what its iterates do, and which published stopping test lies on the way.
+//! Why a run gave up, decided by what its iterates do, and which published stopping test lies on the way.
 //!
 //! A method that gives up says how it ended, not why. Its run is deterministic, so it is repeated under the eyes of a
 //! [`Watch`], which sees P and v of every iterate; the method knows nothing of it. Files: `watch` records,

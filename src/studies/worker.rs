@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::memory;
-use super::record::Limits;
+use super::origin::Limits;
 use crate::run::outside::process::denied;
 use crate::run::verdict::Verdict;
 

@@ -2,7 +2,7 @@
 
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::analysis::causes::{AtlasRow, StoppingRow};
+use crate::studies::analysis::causes::{CauseRow, StoppingRow};
 use crate::studies::record::Record;
 use crate::studies::why::Explanation;
 use crate::studies::why::cause::Diagnosis;
@@ -61,7 +61,7 @@ const CAUSE: &str = "why the run gave up, decided by running it again under obse
 const MEASURE: &str = "what decided: combinations of states tried (`no-solution`; `NaN` where a certificate proves it), smallest over largest singular value (`singular-tangent`), least violation (`cycle`, `slow`, `unexplained`), violation over its rounding (`floor`), condition number of W on the loaded rows, or at rest along what is missing to the nearest solution (`conditioning`), iterations up to the inner one that failed (`inner-iteration`), points that keep changing (`wandering`), largest difference between two solutions (`several-solutions`)";
 const CURE: &str = "first of the documented list that solves the problem: the method with another option, else another method; empty if none does";
 
-impl Row for AtlasRow {
+impl Row for CauseRow {
     const NAME: &'static str = "causes";
     const TITLE: &'static str = "Why methods gave up, and what cures it";
     const QUESTION: &'static str = "Why does a method give up, how often for which cause, and what solves the problem instead?";

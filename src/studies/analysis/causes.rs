@@ -11,7 +11,7 @@ use crate::studies::why::stopping::{CRITERIA, Criterion, Stop};
 
 /// All failures of one method by one cause.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AtlasRow {
+pub struct CauseRow {
     /// Method label.
     pub method: String,
     /// Why.
@@ -64,8 +64,8 @@ pub struct StoppingRow {
 /// Runs on which a test was evaluated.
 type Watched<'a> = Vec<(&'a Record, &'a Stop)>;
 
-/// The atlas: rows by method and cause.
-pub fn atlas(records: &[Record]) -> Vec<AtlasRow> {
+/// Why the runs of a method gave up: rows by method and cause.
+pub fn causes(records: &[Record]) -> Vec<CauseRow> {
     let mut groups: BTreeMap<(&str, Cause), Vec<(&Record, &Explanation)>> = BTreeMap::new();
     let mut totals: BTreeMap<&str, usize> = BTreeMap::new();
     for record in records {
@@ -89,7 +89,7 @@ pub fn atlas(records: &[Record]) -> Vec<AtlasRow> {
         };
         let smallest = smallest.min_by(order)?;
         let total = totals.get(method).copied().unwrap_or(runs.len());
-        Some(AtlasRow {
+        Some(CauseRow {
             method: method.to_owned(),
             cause,
             count: runs.len(),

@@ -5,7 +5,8 @@ use stickslip_methods::Tier;
 use super::costs::Costs;
 use super::test_set::TestSet;
 use crate::run::verdict::Verdict;
-use crate::studies::record::{Found, Judge, Origin, ProblemSize, Record, SolverError, Spent, Step};
+use crate::studies::origin::Origin;
+use crate::studies::record::{Found, Judge, ProblemSize, Record, SolverError, Spent, Step};
 use crate::studies::statistics::Timing;
 use crate::studies::task::{Asked, Looks};
 

@@ -23,7 +23,7 @@ pub struct Exercise {
     /// Its answer.
     pub known: Known,
     /// λ by column of V.
-    amplitudes: Vec<f64>,
+    pub amplitudes: Vec<f64>,
     /// u of the answer.
     velocity: Vec<f64>,
 }
@@ -49,7 +49,7 @@ impl Exercise {
         let mut problem = self.problem.clone();
         let mut class = WITHOUT_ANSWER;
         if let Known::Reactions(r) = &self.known {
-            let (u, l) = (self.velocity.clone(), self.amplitudes());
+            let (u, l) = (self.velocity.clone(), self.amplitudes.clone());
             let (v, r) = (Vec::new(), r.clone());
             problem.solution = Some(Solution { v, u, r, l });
             class = "known";
@@ -61,11 +61,6 @@ impl Exercise {
             digest: digest_of_bytes(&bytes),
             matter: Arc::new(Matter::Bytes(bytes)),
         })
-    }
-
-    /// λ by column of V of the known answer.
-    pub fn amplitudes(&self) -> Vec<f64> {
-        self.amplitudes.clone()
     }
 }
 

@@ -237,18 +237,14 @@ impl<'a> Open<'a> {
             _ => {}
         }
         for own in self.finding.records.iter().skip(1) {
-            match &own.found.verdict {
-                Verdict::FalseClaim => {}
+            let method = &own.found.method;
+            self.faults.extend(match &own.found.verdict {
+                Verdict::FalseClaim => Some((Fault::FalseClaim, method.clone())),
                 Verdict::Crashed(reason) if reason.contains("panic") => {
-                    self.faults
-                        .push((Fault::Panic, format!("{}: {reason}", own.found.method)));
+                    Some((Fault::Panic, format!("{method}: {reason}")))
                 }
-                _ => continue,
-            }
-            if own.found.verdict == Verdict::FalseClaim {
-                self.faults
-                    .push((Fault::FalseClaim, own.found.method.clone()));
-            }
+                _ => None,
+            });
         }
         if found.verdict == Verdict::FalseClaim {
             self.faults.push((Fault::FalseClaim, DEFAULT.into()));
@@ -258,11 +254,7 @@ impl<'a> Open<'a> {
         let apart = apart.filter_map(|own| Some(own.found.solver_error.as_ref()?.force));
         self.finding.disagreement = apart.reduce(f64::max);
         let several = self.finding.disagreement.is_some_and(|d| d > DIFFERENT);
-        let cause = found
-            .why
-            .as_ref()
-            .map_or("", |why| why.diagnosis.cause.name());
-        let reason = format!("{DEFAULT}: {} {cause}", found.verdict);
+        let reason = format!("{DEFAULT}: {} {}", found.verdict, found.cause());
         if found.verdict == Verdict::GaveUp(Status::NoEquilibrium) {
             self.faults.push((Fault::NoEquilibrium, reason));
         } else if Self::missed(&main) && several {

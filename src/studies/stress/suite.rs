@@ -6,7 +6,7 @@ use super::find::{Effort, find};
 use super::finding::{Fault, Finding};
 use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
-use crate::studies::lab::{Ask, LabError};
+use crate::studies::lab::{Ask, LabError, Shard};
 
 /// Scenes asked for at once.
 const TOGETHER: usize = 64;
@@ -27,8 +27,8 @@ pub struct Suite {
     pub seed: u64,
     /// Scenes per family.
     pub scenes: BTreeMap<Family, u64>,
-    /// Part `number` of `of`, from 1.
-    pub shard: (u64, u64),
+    /// Which part: every so many scenes of a family.
+    pub shard: Shard,
 }
 
 /// What became of all scenes of a suite, in order; fewer where it was told to stop.
@@ -37,8 +37,8 @@ pub struct Suite {
 /// [`LabError`].
 pub fn run(ask: &mut dyn Ask, suite: &Suite) -> Result<Vec<Finding>, LabError> {
     let all = (suite.scenes.iter()).flat_map(|(&family, &n)| (0..n).map(move |k| (family, k)));
-    let (number, of) = suite.shard;
-    let own = all.filter(|own| own.1 % of == number - 1);
+    let Shard { number, of } = suite.shard;
+    let own = all.filter(|own| own.1 as usize % of == number - 1);
     let scenes: Vec<Scene> = own
         .map(|(family, k)| scene(family, suite.seed, k))
         .collect();
