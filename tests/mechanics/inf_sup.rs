@@ -167,27 +167,31 @@ fn measure(body: &Body, space: ContactSpace, h: f64) -> Found {
             .all(|&i| kind(i) == FunctionKind::Standard)
     );
     let masses = mass(&body.integrator());
-    let mut a = Mat::zeros(n, n);
-    for j in 0..n {
-        let mut one = vec![0.0; n];
-        one[j] = 1.0;
-        let (k, m) = (body.stiffness.mul(&one), masses.mul(&one));
-        (0..n).for_each(|i| a[(i, j)] = k[i] + m[i]);
+    // In the basis of the solver: branch functions within a radius are not independent as they stand. Each of its vectors
+    // has few entries, which a product of dense matrices would not see.
+    let mut basis = vec![Vec::new(); n];
+    for i in 0..n {
+        (body.basis.column(dim, i).into_iter()).for_each(|(p, s)| basis[p].push((i, s)));
+    }
+    let kept = (0..n).filter(|&i| !body.basis.drops(dim, i));
+    let basis: Vec<Vec<(usize, f64)>> = kept.map(|i| std::mem::take(&mut basis[i])).collect();
+    let dot = |b: &[(usize, f64)], v: &[f64]| b.iter().map(|&(i, s)| s * v[i]).sum::<f64>();
+    let mut a = Mat::zeros(basis.len(), basis.len());
+    for (j, vector) in basis.iter().enumerate() {
+        let mut b = vec![0.0; n];
+        vector.iter().for_each(|&(i, s)| b[i] = s);
+        let (k, m) = (body.stiffness.mul(&b), masses.mul(&b));
+        let image: Vec<f64> = k.iter().zip(&m).map(|(k, m)| k + m).collect();
+        (basis.iter().enumerate()).for_each(|(i, b)| a[(i, j)] = dot(b, &image));
     }
     let rows = body.jump_rows.len();
-    let mut g = Mat::zeros(rows, n);
+    let mut g = Mat::zeros(rows, basis.len());
     for (i, row) in body.jump_rows.iter().enumerate() {
+        let mut functional = vec![0.0; n];
         row.iter()
-            .for_each(|&(j, v)| g[(i, j)] = v * body.points[i / dim].weight);
+            .for_each(|&(j, v)| functional[j] += v * body.points[i / dim].weight);
+        (basis.iter().enumerate()).for_each(|(j, b)| g[(i, j)] = dot(b, &functional));
     }
-    // In the basis of the solver: branch functions within a radius are not independent as they stand.
-    let kept: Vec<usize> = (0..n).filter(|&i| !body.basis.drops(dim, i)).collect();
-    let mut basis = Mat::<f64>::zeros(n, n);
-    for i in 0..n {
-        (body.basis.column(dim, i).into_iter()).for_each(|(p, s)| basis[(i, p)] = s);
-    }
-    let basis = Mat::from_fn(n, kept.len(), |i, j| basis[(i, kept[j])]);
-    let (a, g) = (basis.transpose() * &a * &basis, &g * &basis);
     let s = &g * a.llt(Side::Lower).unwrap().solve(g.transpose());
     // Scaled, S x = λ C x is L⁻¹ S L⁻ᵀ y = λ y with C = L Lᵀ: multipliers of slivers are small.
     let c = multiplier_norm(body, space, h);

@@ -17,19 +17,17 @@
 // The macros make public items without documentation.
 #![allow(missing_docs)]
 
-mod common;
-
 use std::hint::black_box;
 use std::sync::Once;
 
-use common::scene::Scene;
-use common::{PROBLEMS, Problem};
 use gungraun::{
     Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
 use stickslip::run::choice::Choice;
 use stickslip::run::registry;
 use stickslip_methods::{Enforcement, Outcome};
+use stickslip_timing::scene::Scene;
+use stickslip_timing::{PROBLEMS, Problem, one_thread};
 
 /// A method in front of its increment.
 type Ready = (Scene, Box<dyn Enforcement>);
@@ -53,7 +51,7 @@ fn instructions_only() -> LibraryBenchmarkConfig {
 }
 
 fn ready(problem: &Problem, name: &str) -> Ready {
-    common::one_thread();
+    one_thread();
     let choice =
         Choice::new(registry::method(name).expect("registered"), &[]).expect("defaults are valid");
     let scene = Scene::new(problem);

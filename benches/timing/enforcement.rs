@@ -9,12 +9,11 @@ mod common;
 
 use std::time::Duration;
 
-use common::scene::Scene;
-use common::{
-    ENFORCEMENT, MEASUREMENT, PREPARE, PROBLEMS, WARM_UP, bench, group, left_out, settings,
-};
+use common::{MEASUREMENT, WARM_UP, bench, group, settings};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use stickslip::run::choice::Choice;
+use stickslip_timing::scene::Scene;
+use stickslip_timing::{ENFORCEMENT, PREPARE, PROBLEMS, left_out};
 
 /// For what takes nanoseconds.
 const SHORT: Duration = Duration::from_millis(20);

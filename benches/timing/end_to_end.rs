@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{ALL_METHODS, EXACT, PROBLEMS, bench, group, left_out, runs_all_methods, settings};
+use common::{bench, group, settings};
 use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip::case;
 use stickslip::run::choice::Choice;
@@ -13,6 +13,7 @@ use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
 use stickslip::studies::cases::{Fields, Settings, Why, run_case};
 use stickslip::studies::rows::Results;
+use stickslip_timing::{ALL_METHODS, EXACT, PROBLEMS, left_out, runs_all_methods};
 
 const SETTINGS: Settings = Settings {
     tier: None,

@@ -6,12 +6,11 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
-use common::{
-    ASSEMBLY, CONDENSATION, FACTORISATION, MESH_TO_SYSTEM, PROBLEMS, bench, group, settings,
-};
+use common::{bench, group, settings};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use stickslip::model::body::{Body, Needs};
 use stickslip_methods::ContactSystem;
+use stickslip_timing::{ASSEMBLY, CONDENSATION, FACTORISATION, MESH_TO_SYSTEM, PROBLEMS};
 
 fn discretisation(criterion: &mut Criterion) {
     for problem in &PROBLEMS {

@@ -1,25 +1,22 @@
-//! What the benchmarks share: their problems, names and settings.
-
-// Every benchmark uses its own part.
-#![allow(dead_code)]
+//! Problems of the benchmarks, and the name of every measurement on them.
 
 pub mod scene;
 
-use std::time::Duration;
-
-use criterion::measurement::WallTime;
-use criterion::{Bencher, BenchmarkGroup, BenchmarkId, Criterion, SamplingMode};
 use stickslip::case::Case;
 use stickslip::case::shipped;
 
-/// Stages before a method starts.
+/// Stages before a method starts: everything to the system of equations.
 pub const MESH_TO_SYSTEM: &str = "mesh to system";
+/// Assembly of K, a part of the stage above.
 pub const ASSEMBLY: &str = "assembly";
+/// Factorisation of K.
 pub const FACTORISATION: &str = "factorisation";
+/// Condensation to the contact points.
 pub const CONDENSATION: &str = "condensation";
 
-/// Stages of a method.
+/// What a method does once for a system.
 pub const PREPARE: &str = "prepare";
+/// The solve of an increment without the work on all unknowns of the body.
 pub const ENFORCEMENT: &str = "enforcement";
 
 /// The exact method that follows load paths and stands for all of them from case file to judged result.
@@ -49,8 +46,11 @@ impl BenchmarkName {
 
 /// A shipped case on one mesh with one friction coefficient.
 pub struct Problem {
+    /// Name of the case.
     pub case: &'static str,
+    /// Cells along each cell of the shipped mesh.
     pub refine: usize,
+    /// Friction coefficient μ.
     pub friction: f64,
 }
 
@@ -86,6 +86,11 @@ pub const PROBLEMS: [Problem; 5] = [
 ];
 
 impl Problem {
+    /// The shipped case.
+    ///
+    /// # Panics
+    ///
+    /// If no case of that name is shipped.
     pub fn case(&self) -> Case {
         match shipped::find(self.case) {
             Some(Ok(case)) => case,
@@ -117,53 +122,15 @@ impl Problem {
     }
 }
 
-/// Before every benchmark.
-pub const WARM_UP: Duration = Duration::from_millis(100);
-/// For the samples of a benchmark together, where ten calls do not take longer.
-pub const MEASUREMENT: Duration = Duration::from_millis(300);
-
 /// Whether a case runs end to end with all methods too.
 pub fn runs_all_methods(problem: &Problem) -> bool {
     problem.case == "plate_mesh1"
-}
-
-/// Settings of all groups: many short measurements, since a solve takes microseconds to half a second. Criterion's own
-/// statistics are cheap ones.
-pub fn settings() -> Criterion {
-    one_thread();
-    Criterion::default()
-        .sample_size(10)
-        .nresamples(2_000)
-        .warm_up_time(WARM_UP)
-        .measurement_time(MEASUREMENT)
-        .without_plots()
 }
 
 /// Makes every stage run on one thread, as the methods do.
 pub fn one_thread() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
     pool.build_global().expect("no thread pool was used before");
-}
-
-/// A group of benchmarks of one problem.
-pub fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
-    let mut group = criterion.benchmark_group(name);
-    // As many calls in every sample: set-up may take much longer than what is timed.
-    group.sampling_mode(SamplingMode::Flat);
-    group
-}
-
-/// One benchmark under its name; the group is that of the name.
-pub fn bench(
-    group: &mut BenchmarkGroup<'_, WallTime>,
-    name: &BenchmarkName,
-    routine: impl FnMut(&mut Bencher<'_>),
-) {
-    if name.value.is_empty() {
-        group.bench_function(&name.function, routine);
-    } else {
-        group.bench_function(BenchmarkId::new(&name.function, &name.value), routine);
-    }
 }
 
 /// Says that a benchmark is not run.

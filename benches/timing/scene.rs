@@ -13,7 +13,7 @@ use stickslip_methods::{
     ContactState, ContactSystem, Enforcement, Increment, Load, Outcome, Silent, Tier,
 };
 
-use super::{EXACT, Problem};
+use crate::{EXACT, Problem};
 
 /// The increment of a load path in which an exact method took the most iterations.
 pub struct Scene {
