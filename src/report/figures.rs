@@ -4,7 +4,6 @@
 //! and errors stand beside honest verdicts only: runs that solved the contact laws or, named as such, their own ones.
 
 pub mod agreement;
-pub mod converged;
 pub mod cost;
 pub mod error;
 pub mod fastest;
@@ -20,7 +19,6 @@ pub mod scaling;
 pub mod sensitivity;
 pub mod stages;
 pub mod success;
-pub mod table1;
 pub mod time_to_accuracy;
 pub mod work_precision;
 
@@ -28,9 +26,7 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 20] = [
-    (Chapter::Paper, &table1::KIND),
-    (Chapter::Paper, &converged::KIND),
+pub static CATALOGUE: [(Chapter, &Kind); 17] = [
     (Chapter::Methods, &cost::KIND),
     (Chapter::Study, &fastest::KIND),
     (Chapter::Study, &success::KIND),
@@ -45,7 +41,6 @@ pub static CATALOGUE: [(Chapter, &Kind); 20] = [
     (Chapter::Accuracy, &error::KIND),
     (Chapter::Runs, &fields::CONTACT),
     (Chapter::Runs, &fields::DISPLACEMENT),
-    (Chapter::Runs, &fields::VON_MISES),
     (Chapter::Runs, &residual::KIND),
     (Chapter::Runs, &profile::KIND),
     (Chapter::Runs, &friction_loop::KIND),

@@ -24,11 +24,9 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     super::add_provenance(&mut bundle, provenance)?;
     table::add(&mut bundle, &paper.table1, "")?;
     table::add(&mut bundle, &paper.table2, "")?;
-    figures::table1::add(&mut bundle, &paper.table1)?;
     table::add(&mut bundle, &paper.penalty, "")?;
     table::add(&mut bundle, &paper.refinement, "")?;
     table::add(&mut bundle, &paper.converged, "")?;
-    figures::converged::add(&mut bundle, &paper.refinement, &paper.converged)?;
     let comparison = comparison(&paper.results.runs);
     table::add(&mut bundle, &comparison, "")?;
     figures::cost::add(&mut bundle, &comparison)?;

@@ -27,7 +27,7 @@ pub use axis::{Axis, prefixed};
 pub use canvas::{italic, plain, subscript};
 pub use colour::Rgb;
 pub use contact::contact_status;
-pub use contour::{displacement, von_mises};
+pub use contour::displacement;
 pub use figure::Figure;
 pub use heatmap::{Cell, HeatMap};
 pub use series::{Draw, Guide, Panel, Series};

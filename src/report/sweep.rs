@@ -1,6 +1,6 @@
 //! Records of a sweep as tables and figures.
 //!
-//! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`, `study.csv`,
+//! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`,
 //! `success.*`, `sensitivity.*`, `safe_windows.*`. All others belong to the machine. Times stand beside honest verdicts only, see
 //! [`published_times`](crate::studies::analysis::published_times).
 

@@ -14,9 +14,9 @@ mod words;
 
 use causes::WhyRow;
 use problems::ProblemRow;
-use ranks::{AccuracyRow, PointRow, ProfileRow, RankingRow};
+use ranks::{AccuracyRow, PointRow, RankingRow};
 use sensitivity::{SensitivityRow, WindowRow};
-use sweep::{CellRow, DeviationRow, IncrementRow, SummaryRow, TimeRow};
+use sweep::{CellRow, DeviationRow, IncrementRow, TimeRow};
 
 use super::table::{self, Description, Row};
 use super::{Bundle, ReportError};
@@ -172,8 +172,6 @@ pub fn of_study() -> Vec<OfStudy> {
             let rows: Vec<SensitivityRow> = sweeps.iter().flat_map(SensitivityRow::of).collect();
             add(to, &rows, caveat)
         }),
-        table::<SummaryRow>(|to, of, _| add(to, &sweep::numbers(of), "")),
-        table::<ProfileRow>(|to, of, _| add(to, &ranks::profiles(of), "")),
         table::<PointRow>(|to, of, _| add(to, &ranks::curves(of), "")),
         table::<AccuracyRow>(|to, of, _| {
             let meshes = refinements(of);

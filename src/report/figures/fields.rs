@@ -1,9 +1,9 @@
-//! Pictures of bodies: contours of plane ones, the contact status on the crack of solids.
+//! Pictures of bodies: the displacement of plane ones, the contact status on the crack of solids.
 
 use super::kind::Kind;
 use super::runs::problem;
 use crate::report::names::stem;
-use crate::report::plot::{contact_status, displacement, plain, von_mises};
+use crate::report::plot::{contact_status, displacement, plain};
 use crate::report::{Bundle, ReportError};
 use crate::studies::rows::RunFields;
 
@@ -13,14 +13,6 @@ pub static DISPLACEMENT: Kind = Kind {
     question: "How does the plane body deform?",
     shows: "Displacement u_x and u_y of a plane body in the last increment as bands on the deformed shape; boundary \
             and crack faces are black, the undeformed ones grey.",
-};
-
-/// Stress of plane bodies.
-pub static VON_MISES: Kind = Kind {
-    file: "*.von-mises.svg",
-    question: "Where is the plane body under stress?",
-    shows: "Von Mises stress of a plane body in the last increment on the deformed shape. The colour bar ends where \
-            98 % of the body lie below, with a point if the largest value is far above.",
 };
 
 /// Contact status of solids.
@@ -42,10 +34,7 @@ pub fn add(bundle: &mut Bundle, fields: &RunFields) -> Result<(), ReportError> {
     let (key, stem) = (&fields.key, stem(&fields.key));
     let run = format!("{}, {}", problem(key), plain(&key.method));
     match step.body.dim {
-        2 => {
-            DISPLACEMENT.add(bundle, &stem, Some(displacement(&step.body, &run)?))?;
-            VON_MISES.add(bundle, &stem, Some(von_mises(&step.body, &run)?))
-        }
+        2 => DISPLACEMENT.add(bundle, &stem, Some(displacement(&step.body, &run)?)),
         3 if !step.crack.cells.is_empty() => {
             CONTACT.add(bundle, &stem, Some(contact_status(step, &run)?))
         }

@@ -25,8 +25,6 @@ pub struct Levels {
     /// Strictly between `low` and `high`, evenly spaced.
     inner: Vec<f64>,
     step: f64,
-    /// Largest value, where it lies beyond `high`.
-    beyond: Option<f64>,
 }
 
 impl Levels {
@@ -38,7 +36,6 @@ impl Levels {
             high,
             inner: Vec::new(),
             step: 0.0,
-            beyond: None,
         };
         // A constant field has one band; its round-off is no contour.
         if span > 1e-9 * low.abs().max(high.abs()) {
@@ -48,12 +45,6 @@ impl Levels {
             levels.inner.retain(inside);
         }
         levels
-    }
-
-    /// The same for a field with this largest value, maybe above the upper end: the highest band takes what is above.
-    pub fn reaching(self, largest: f64) -> Self {
-        let beyond = Some(largest).filter(|largest| *largest > self.high);
-        Self { beyond, ..self }
     }
 
     /// Decimals that all levels need.
@@ -101,9 +92,6 @@ pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_m
     }
 }
 
-/// Height of the point on a bar that does not reach the largest value.
-const POINT_MM: f64 = 2.5;
-
 /// A vertical colour bar with its label on top: lower left corner, height, in millimetres.
 pub fn colour_bar(
     canvas: &mut Canvas,
@@ -113,9 +101,6 @@ pub fn colour_bar(
     label: &str,
 ) {
     const WIDTH: f64 = 3.0;
-    // A bar that ends in a point does not reach the largest value.
-    let above = levels.beyond.map_or(0.0, |_| POINT_MM + 1.2);
-    let height = height - above;
     let span = if levels.high > levels.low {
         levels.high - levels.low
     } else {
@@ -128,19 +113,13 @@ pub fn colour_bar(
     for (band, pair) in edges.windows(2).enumerate() {
         canvas.boxed([x, pair[1]], [x + WIDTH, pair[0]], levels.colour(band), 0.0);
     }
-    let mut corners = vec![
+    let corners = [
         [x, top],
         [x, bottom],
         [x + WIDTH, bottom],
         [x + WIDTH, top],
         [x, top],
     ];
-    let point = [x + 0.5 * WIDTH, top - POINT_MM];
-    if levels.beyond.is_some() {
-        let colour = levels.colour(levels.inner.len());
-        canvas.fill(&[[x, top], [x + WIDTH, top], point], colour);
-        corners.insert(4, point);
-    }
     canvas.line(&corners, BLACK, 0.15);
     let mut text = |at: f64, text: String| {
         canvas.text(&text, [x + WIDTH + 1.3, at], SMALL_PT, Anchor::Start, BLACK);
@@ -154,20 +133,11 @@ pub fn colour_bar(
     for level in &levels.inner {
         text(place(*level), number(*level, levels.decimals()));
     }
-    if let Some(largest) = levels.beyond {
-        text(point[1] + 0.3, format!("to {}", significant(largest, 2)));
-    }
     for level in &levels.inner {
         let at = place(*level);
         canvas.line(&[[x + WIDTH, at], [x + WIDTH + 0.8, at]], BLACK, 0.15);
     }
-    canvas.text(
-        label,
-        [x, top - 3.0 - above],
-        LABEL_PT,
-        Anchor::Start,
-        BLACK,
-    );
+    canvas.text(label, [x, top - 3.0], LABEL_PT, Anchor::Start, BLACK);
 }
 
 /// The part of a triangle where the field is at least the level.

@@ -1,4 +1,4 @@
-//! Contours on the deformed shape of a plane body: u_x and u_y side by side, or von Mises' stress.
+//! Displacement of a plane body as bands on its deformed shape: u_x and u_y side by side, one above the other for flat bodies.
 
 use super::axis::{Axis, prefixed, range};
 use super::bands::{self, Levels, Triangle};
@@ -12,12 +12,6 @@ use crate::model::field_mesh::{CellShape, FieldMesh};
 use crate::report::ReportError;
 use crate::report::number::significant;
 
-/// Name of the cell scalar with von Mises' equivalent stress.
-const VON_MISES: &str = "von_mises_pa";
-/// Part of the body that a colour bar covers for certain: the stress at a tip has no bound.
-const COVERED: f64 = 0.98;
-/// A largest value up to this factor above that part is covered too.
-const NEAR: f64 = 1.5;
 /// Least and greatest height of a colour bar, and room right of a body for it [mm].
 const BAR_MM: [f64; 2] = [32.0, 60.0];
 const RIGHT: f64 = 19.0;
@@ -56,61 +50,6 @@ pub fn displacement(picture: &FieldMesh, run: &str) -> Result<String, ReportErro
     contours(picture, &[field(0), field(1)], &title, run)
 }
 
-/// von Mises' equivalent stress of a plane picture as filled bands on the deformed shape, see [`displacement`]; needs the
-/// cell scalar `von_mises_pa` too.
-///
-/// Points show the mean over their cells, weighted by size; those on the two faces of a crack are two, so nothing is
-/// averaged across it. The colour bar ends where all but a fiftieth of the body lies below, if the largest value is far
-/// above that.
-///
-/// # Errors
-/// Those of [`displacement`].
-pub fn von_mises(picture: &FieldMesh, run: &str) -> Result<String, ReportError> {
-    let given = picture.cell_scalars.iter().find(|(n, _)| n == VON_MISES);
-    let stress = given.map_or(&[][..], |(_, values)| values);
-    let (found, cells) = (stress.len(), picture.cells.len());
-    if found != cells {
-        return fail(VON_MISES, &format!("{found} values for {cells} cells"));
-    }
-    let mut sums = vec![[0.0; 2]; picture.points.len()];
-    let known = picture.cells.iter().zip(stress);
-    for (cell, stress) in known.filter(|(_, stress)| stress.is_finite()) {
-        let corners = cell.points.iter().filter_map(|p| picture.points.get(*p));
-        let next = corners.clone().cycle().skip(1);
-        let parts = corners.zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]);
-        let size = 0.5 * parts.sum::<f64>().abs();
-        for point in &cell.points {
-            if let Some([sum, weight]) = sums.get_mut(*point) {
-                (*sum, *weight) = (*sum + size * stress, *weight + size);
-            }
-        }
-    }
-    let mean = |[sum, weight]: &[f64; 2]| (sum / weight, *weight);
-    let mut means: Vec<(f64, f64)> = sums.iter().map(mean).collect();
-    let values: Vec<f64> = means.iter().map(|mean| mean.0).collect();
-    let (low, high) = range(values.iter().copied()).unwrap_or((0.0, 0.0));
-    means.retain(|mean| mean.0.is_finite());
-    means.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut left = COVERED * means.iter().map(|mean| mean.1).sum::<f64>();
-    let covered = means.iter().find(|(_, weight)| {
-        left -= weight;
-        left <= 0.0
-    });
-    let covered = covered.map_or(0.0, |mean| mean.0);
-    let end = if high > NEAR * covered { covered } else { high };
-    let (factor, unit) = prefixed(end, "Pa");
-    let field = Field {
-        values: values.iter().map(|value| value * factor).collect(),
-        levels: Levels::new(low * factor, end * factor).reaching(high * factor),
-        label: format!("{}{} [{unit}]", italic("σ"), subscript("vM")),
-    };
-    let title = format!(
-        "Von Mises stress, below {} in 98 % of the body",
-        told(covered, "Pa")
-    );
-    contours(picture, &[field], &title, run)
-}
-
 fn told(value: f64, unit: &str) -> String {
     let (factor, unit) = prefixed(value, unit);
     format!("{} {unit}", significant(value * factor, 3))
@@ -124,10 +63,10 @@ struct Body {
     places: [Vec<[f64; 2]>; 2],
 }
 
-/// One or two fields as panels side by side, one above the other for flat bodies; a single one takes a column.
+/// Two fields as panels.
 fn contours(
     picture: &FieldMesh,
-    fields: &[Field],
+    fields: &[Field; 2],
     title: &str,
     run: &str,
 ) -> Result<String, ReportError> {
@@ -150,13 +89,8 @@ fn contours(
         outline,
         places,
     };
-    let (stacked, count) = (shown.width() > 2.5 * shown.height(), fields.len() as f64);
-    let width = if count == 1.0 && !stacked {
-        COLUMN
-    } else {
-        PAGE
-    };
-    let share = if stacked { width } else { width / count };
+    let stacked = shown.width() > 2.5 * shown.height();
+    let share = if stacked { PAGE } else { PAGE / 2.0 };
     let axis = |c: usize| Axis::linear(&format!("{} [m]", italic(["x", "y"][c])));
     let fitted = |c: usize| axis(c).fitted([shown.low[c], shown.high[c]], 5);
     let (Some(x), Some(y)) = (fitted(0), fitted(1)) else {
@@ -167,11 +101,11 @@ fn contours(
     let size = [scale * x.span(), scale * y.span()];
     let panel = Panel::new(x, y, size[1]);
     let caption = format!("{run}, deformation ×{}", significant(factor, 1));
-    let head = Head::new(title, &caption, width);
+    let head = Head::new(title, &caption, PAGE);
     // A flat body leaves room for a readable colour bar all the same.
     let height = ABOVE + size[1].max(BAR_MM[0]) + BELOW;
-    let rows = if stacked { count } else { 1.0 };
-    let mut canvas = Canvas::new(width, head.height() + rows * height);
+    let rows = if stacked { 2.0 } else { 1.0 };
+    let mut canvas = Canvas::new(PAGE, head.height() + rows * height);
     head.draw(&mut canvas);
     for (index, field) in fields.iter().enumerate() {
         let [right, down] = if stacked { [0.0, height] } else { [share, 0.0] };

@@ -8,11 +8,10 @@ use crate::studies::analysis::support::{end_with, lying, record, timed};
 use crate::studies::followed::Value;
 
 /// Files that must not depend on times.
-const TIMELESS: [&str; 5] = [
+const TIMELESS: [&str; 4] = [
     "cells.csv",
     "increments.csv",
     "deviations.csv",
-    "study.csv",
     "success.csv",
 ];
 
@@ -282,7 +281,7 @@ fn without_times_there_are_no_rankings_and_no_errors() {
     let files = files(&records);
     assert!(!files.contains_key("figures/profile.time.svg"));
     assert!(!files.contains_key("figures/fastest.svg"));
-    for path in ["ranking.csv", "times.csv", "time_profiles.csv"] {
+    for path in ["ranking.csv", "times.csv"] {
         assert!(!files.contains_key(path), "{path}");
     }
     assert!(

@@ -9,7 +9,6 @@ use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::analysis::compare_methods;
 use crate::studies::analysis::costs::Costs;
-use crate::studies::analysis::profile::performance;
 use crate::studies::analysis::ranking::{PENALTY, Ranking, Standing, ranking};
 use crate::studies::analysis::scaling::Growth;
 use crate::studies::analysis::series::{Point, Series, Swept, series};
@@ -71,41 +70,6 @@ impl Row for SuccessRow {
             "iterations_median" "" .named("iterations, median") = r.iterations[0], "median of the iterations of the runs that did what they claim";
             "iterations_p90" "" = r.iterations[1], "90 % of these need no more";
             "iterations_max" "" = r.iterations[2], "largest number";
-        }
-    }
-}
-
-/// A step of a performance profile.
-pub struct ProfileRow {
-    /// Accuracy asked for.
-    pub tier: Tier,
-    /// Method.
-    pub method: String,
-    /// Ratio, and fraction from there on.
-    pub step: [f64; 2],
-    /// Problems of the tier.
-    pub problems: usize,
-}
-
-impl Row for ProfileRow {
-    const NAME: &'static str = "time_profiles";
-    const TITLE: &'static str = "Performance profiles of the time of the method (Dolan & Moré, Math. Program. 91 (2002) 201): the fraction of problems that a method solves within τ times the least time of all methods";
-    const QUESTION: &'static str = "How often is a method how far from the fastest?";
-    const NOTES: &'static str = "A row where the fraction jumps up. Ratios below 1 + the width of the intervals mean nothing.";
-    const READABLE: bool = false;
-    const ORDER: Order<Self> = Order::By(|a, b| {
-        compare_tiers(a.tier, b.tier)
-            .then_with(|| compare_methods(&a.method, &b.method))
-            .then(a.step[0].total_cmp(&b.step[0]))
-    });
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "tier" "" = r.tier.to_string(), "accuracy asked for";
-            "method" "" = r.method.clone(), METHOD;
-            "tau" "–" .significant(6) = r.step[0], "bound on time / least time";
-            "fraction" "–" .significant(6) = r.step[1], "fraction of the problems within it, those that no method solves included";
-            "problems" "" = r.problems, "problems";
         }
     }
 }
@@ -283,23 +247,6 @@ impl Row for AccuracyRow<'_> {
 /// What is compared at every tier.
 pub fn sets(records: &[Record]) -> [TestSet<'_>; 3] {
     Tier::ALL.map(|tier| TestSet::new(records, tier))
-}
-
-/// Steps of the performance profiles, tier after tier.
-pub fn profiles(records: &[Record]) -> Vec<ProfileRow> {
-    let mut rows = Vec::new();
-    for set in &sets(records) {
-        let costs = Costs::new(set);
-        for curve in performance(&costs) {
-            rows.extend(curve.steps.iter().map(|step| ProfileRow {
-                tier: set.tier,
-                method: curve.method.to_owned(),
-                step: *step,
-                problems: costs.problems(),
-            }));
-        }
-    }
-    rows
 }
 
 /// Methods by mean time, tier after tier.

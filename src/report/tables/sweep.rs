@@ -5,9 +5,7 @@ use std::cmp::Ordering;
 use super::words::*;
 use crate::model::errors::Deviation;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::report::tables::ranks::sets;
 use crate::studies::analysis::accuracy::sequences;
-use crate::studies::analysis::problems;
 use crate::studies::analysis::{compare_methods, compare_problems, method_time, published_times};
 use crate::studies::followed::Value;
 use crate::studies::record::{ProblemSize, Record, SolverError, Spent, Step};
@@ -251,29 +249,6 @@ impl Row for DeviationRow<'_> {
     }
 }
 
-/// A number about the study as a whole.
-pub struct SummaryRow {
-    /// What is counted.
-    pub quantity: String,
-    /// How many.
-    pub value: usize,
-}
-
-impl Row for SummaryRow {
-    const NAME: &'static str = "study";
-    const TITLE: &'static str = "The study in numbers";
-    const QUESTION: &'static str =
-        "How many problems stand behind the comparison, and how many were left out?";
-    const READABLE: bool = false;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "quantity" "" .key() = r.quantity.clone(), "`cells` with a record, `problems`; per tier `problems_compared_…` and `problems_left_out_…`, those that some method was not given";
-            "value" "" .shown() = r.value, "number";
-        }
-    }
-}
-
 /// Stages of a cell in the order in which they come.
 pub const STAGES: [&str; 7] = [
     "setup",
@@ -372,19 +347,4 @@ impl Row for TimeRow<'_> {
             "profile" "" = r.record.origin.profile.clone(), "build profile";
         })
     }
-}
-
-/// The study in numbers.
-pub fn numbers(records: &[Record]) -> Vec<SummaryRow> {
-    let row = |quantity: String, value| SummaryRow { quantity, value };
-    let mut rows = vec![
-        row("cells".into(), records.len()),
-        row("problems".into(), problems(records).len()),
-    ];
-    for set in sets(records) {
-        let tier = set.tier;
-        rows.push(row(format!("problems_compared_{tier}"), set.problems.len()));
-        rows.push(row(format!("problems_left_out_{tier}"), set.left_out));
-    }
-    rows
 }

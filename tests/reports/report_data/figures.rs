@@ -3,7 +3,6 @@
 use super::{beam_step, cycle, exact, key, rates, results, results_of_all_methods};
 use stickslip::report::{Bundle, Provenance, figures, standard};
 use stickslip::studies::paper::comparison::comparison;
-use stickslip::studies::paper::printed_tables::Table1Row;
 use stickslip::studies::rows::{Results, RunFields};
 
 /// The figures of a bundle by name, without their folder.
@@ -58,19 +57,6 @@ pub fn figures() -> Vec<(String, String)> {
         steps: vec![beam_step()],
     };
     figures::fields::add(&mut bundle, &fields).expect("contact");
-    let solved = Some("solved".parse().expect("a verdict"));
-    let row = |(mesh, ours): (&str, f64)| {
-        Table1Row::new(
-            mesh,
-            0.1,
-            "b-newton",
-            Some(ours),
-            Some(1000.0),
-            solved.clone(),
-        )
-    };
-    let rows = [("I", 1002.0), ("II", 995.0)].map(row);
-    figures::table1::add(&mut bundle, &rows).expect("table 1");
     found.extend(of(&bundle));
     let renamed = |(name, svg): (String, String)| (format!("all.{name}"), svg);
     found.extend(of_results(&all).into_iter().map(renamed));
