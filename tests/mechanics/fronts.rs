@@ -294,7 +294,7 @@ fn a_front_takes_a_quarter_of_its_room_by_default() {
 #[test]
 fn points_of_cells_with_two_fronts_measure_the_cell() {
     let mut shared = 0;
-    for shift in [0.0, 0.007, 0.013, 0.02] {
+    for shift in [0.007, 0.02] {
         let x = 0.52 + shift;
         let text = format!(
             "title = \"discs\"\nmodel = \"solid\"\nmaterial = {{ young_pa = 1e10, poisson = 0.3 }}\n\
