@@ -40,7 +40,7 @@ for part in $parts; do
         keep)
             # Written by hand: other programs on the same problems.
             find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
-            keep . table1 table2 converged refinement penalty comparison.csv variants.csv \
+            keep . table1 table2 converged refinement penalty comparison.csv \
                 expectations_by_case cost.svg \
                 'beam_model1.6x18x9.edge-pairs.*.mu-0.1.contact.svg' 'penny_crack.*.contact.svg' \
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \

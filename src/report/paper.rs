@@ -5,7 +5,7 @@ use super::tables::runs::ExpectSummary;
 use super::{Bundle, Provenance, ReportError, figures, standard};
 use crate::studies::paper::comparison::comparison;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
-use crate::studies::paper::{CASES, Paper};
+use crate::studies::paper::{CASES, Extent, Paper};
 
 /// All files of the report of the main job.
 ///
@@ -15,9 +15,9 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     let mut bundle = Bundle::new();
     standard::add_tables(&mut bundle, &paper.results)?;
     // Figures of the other cases, some hundred, are drawn by `run` and by the full job.
-    let drawn = match paper.variants {
-        Some(_) => &paper.results,
-        None => &paper.results.of_cases(&CASES),
+    let drawn = match paper.extent {
+        Extent::Full => &paper.results,
+        Extent::Quick => &paper.results.of_cases(&CASES),
     };
     standard::add_figures(&mut bundle, drawn)?;
     standard::add_fields(&mut bundle, &drawn.fields, provenance)?;
@@ -27,12 +27,10 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     table::add(&mut bundle, &paper.penalty, "")?;
     table::add(&mut bundle, &paper.refinement, "")?;
     table::add(&mut bundle, &paper.converged, "")?;
-    let comparison = comparison(&paper.results.runs);
-    table::add(&mut bundle, &comparison, "")?;
-    figures::cost::add(&mut bundle, &comparison)?;
-    if let Some(variants) = &paper.variants {
-        table::add(&mut bundle, variants, "")?;
-    }
+    let defaults = comparison(&paper.results.runs);
+    figures::cost::add(&mut bundle, &defaults)?;
+    let all = paper.results.runs.iter().chain(&paper.variants);
+    table::add(&mut bundle, &comparison(all), "")?;
     Ok(bundle)
 }
 
@@ -44,23 +42,16 @@ pub fn tables(table1: &[Table1Row], table2: &[Table2Row]) -> String {
 
 /// What the terminal shows at the end.
 pub fn text(paper: &Paper) -> String {
-    let mut tables = vec![
+    let tables = [
         readable(&paper.penalty, ""),
         readable(&paper.refinement, ""),
         readable(&paper.converged, ""),
+        readable(&ExpectSummary::of(&paper.results.expectations), ""),
     ];
-    let mut lines = vec![format!(
-        "Model I with exact sub-cells against Model II: {:.1e} mm",
-        paper.beam_models_mm
-    )];
-    if let Some(variants) = &paper.variants {
-        tables.push(readable(variants, ""));
-    }
-    tables.push(readable(
-        &ExpectSummary::of(&paper.results.expectations),
-        "",
-    ));
-    lines.push(standard::summary(&paper.results));
-    let tables: String = tables.iter().map(|table| table.terminal() + "\n").collect();
-    format!("{tables}{}", lines.join("\n"))
+    let tables = tables.map(|table| table.terminal() + "\n").concat();
+    format!(
+        "{tables}Model I with exact sub-cells against Model II: {:.1e} mm\n{}",
+        paper.beam_models_mm,
+        standard::summary(&paper.results)
+    )
 }

@@ -30,7 +30,6 @@ use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
-use crate::studies::paper::variants::VariantRow;
 use crate::studies::record::Record;
 use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, QuantityRow, RunRow};
 use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, MethodRow, SceneRow};
@@ -206,10 +205,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<SequenceRow>(),
         Description::of::<PenaltyRow>(),
     ];
-    let methods = vec![
-        Description::of::<ComparisonRow>(),
-        Description::of::<VariantRow>(),
-    ];
+    let methods = vec![Description::of::<ComparisonRow>()];
     let study = of_study().into_iter().map(|table| table.about).collect();
     let stress = vec![
         Description::of::<FaultRow>(),

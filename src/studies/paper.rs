@@ -15,13 +15,13 @@ pub use lookup::{PaperError, as_printed};
 use crate::case::shipped;
 use crate::run::progress::Progress;
 use crate::studies::cases::{Fields, Settings, run_case};
-use crate::studies::rows::Results;
+use crate::studies::rows::{Results, RunRow};
 
 use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
 use lookup::{case, choice};
 use penalty::{PenaltyRow, penalty_rows};
 use printed_tables::{PAPER_METHODS, Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
-use variants::{VariantRow, variant_rows};
+use variants::variant_runs;
 
 /// Cases that take longer than all others together.
 const LONG: [&str; 2] = ["elliptic_crack", "penny_crack"];
@@ -52,14 +52,17 @@ pub struct Paper {
     pub converged: Vec<ConvergedRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
-    /// Plate and beam by every method and variant, if they were asked for.
-    pub variants: Option<Vec<VariantRow>>,
+    /// Plate and beam by variants of the methods, if they were asked for.
+    pub variants: Vec<RunRow>,
+    /// How much was run.
+    pub extent: Extent,
 }
 
 /// How much is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Extent {
     /// All that takes seconds.
+    #[default]
     Quick,
     /// The long cases, the converged sequences and the variants of the methods too.
     Full,
@@ -99,7 +102,10 @@ pub fn run(
         fields: Fields::None,
         ..settings
     };
-    let mut paper = Paper::default();
+    let mut paper = Paper {
+        extent,
+        ..Paper::default()
+    };
     for (name, _) in shipped::CASES {
         if extent == Extent::Full || !LONG.contains(name) {
             let pictured = extent == Extent::Full || CASES.contains(name);
@@ -115,7 +121,7 @@ pub fn run(
     let full = extent == Extent::Full;
     (paper.refinement, paper.converged) = converged_reactions(full, &paper.table1, progress)?;
     if full {
-        paper.variants = Some(variant_rows(&paper.results, numbers_only, progress)?);
+        paper.variants = variant_runs(numbers_only, progress)?;
     }
     Ok(paper)
 }

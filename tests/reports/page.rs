@@ -321,18 +321,15 @@ fn figures_beyond_the_budget_are_linked() {
 /// A method that lies must not look fast.
 #[test]
 fn times_of_dishonest_runs_are_not_shown() {
-    let header = "case,friction,method,verdict,quantity,value,deviation,natural_map,iterations,tangent_factorisations,\
-                  global_factorisations,solve_s\n";
-    let row = |verdict: &str, time: &str| {
-        format!("c,0.1,liar,{verdict},reaction top y,1,0.5,0.2,1,1,0,{time}\n")
-    };
+    let header = "case,method,increments,verdict,natural_map,iterations,tangent_factorisations,local_solves,solve_s\n";
+    let row = |verdict: &str, time: &str| format!("c,liar,1,{verdict},0.2,1,1,0,{time}\n");
     let text = [
         header,
         &row("false-claim", "0.00123"),
         &row("gave-up: stalled", "0.00124"),
         &row("solved", "0.00125"),
     ];
-    let dir = folder(&[("variants.csv", &text.concat())]);
+    let dir = folder(&[("comparison.csv", &text.concat())]);
     let html = page(dir.path());
     check(&html);
     assert!(

@@ -20,7 +20,6 @@ use stickslip::studies::paper::comparison::comparison;
 use stickslip::studies::paper::converged_reactions::SequenceRow;
 use stickslip::studies::paper::penalty::PenaltyRow;
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
-use stickslip::studies::paper::variants::VariantRow;
 use stickslip::studies::record::{Found, Record};
 use stickslip::studies::rows::{Results, RunRow};
 use stickslip::studies::task::Looks;
@@ -108,20 +107,6 @@ fn says_not_run<R: Row>(row: R) {
 fn every_kind_stands_in_every_table() {
     for run in runs() {
         let (verdict, key) = (run.step.verdict.clone(), run.key.clone());
-        let variant = |verdict| VariantRow {
-            case: key.case.clone(),
-            friction: 0.1,
-            method: key.method.clone(),
-            verdict,
-            quantity: "reaction top y".into(),
-            value: f64::NAN,
-            deviation: f64::NAN,
-            natural_map: f64::NAN,
-            iterations: 0,
-            tangent_factorisations: 0,
-            global_factorisations: 0,
-            solve_s: 1e-3,
-        };
         let table1_row = |verdict| Table1Row::new("I", 0.1, "latin", None, Some(973.3), verdict);
         let table2_row = |verdict| {
             let printed = Table2Row::printed("I", "as-printed", "y", [0.1; 7]);
@@ -168,7 +153,6 @@ fn every_kind_stands_in_every_table() {
         for found in [
             read_back(run.clone(), "verdict"),
             read_back(compared(), "verdict"),
-            read_back(variant(known()), "verdict"),
             read_back(table1_row(known()), "verdict"),
             read_back(table2_row(known()), "verdict"),
             read_back(penalty(known()), "verdict"),
@@ -182,7 +166,6 @@ fn every_kind_stands_in_every_table() {
         ] {
             assert_eq!(found, verdict);
         }
-        says_not_run(variant(None));
         says_not_run(table1_row(None));
         says_not_run(table2_row(None));
         says_not_run(penalty(None));

@@ -10,15 +10,10 @@ use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
-use crate::studies::paper::variants::VariantRow;
 
 /// The printed line comes before the computed ones.
 fn compare_methods(a: &str, b: &str) -> Ordering {
     (a != PRINTED, a).cmp(&(b != PRINTED, b))
-}
-
-fn is_honest(verdict: Option<&Verdict>) -> bool {
-    verdict.is_some_and(Verdict::is_honest)
 }
 
 impl Row for Table1Row {
@@ -145,8 +140,7 @@ impl Row for SequenceRow {
 
 impl Row for ComparisonRow {
     const NAME: &'static str = "comparison";
-    const TITLE: &'static str =
-        "Every case by every method: all meshes, friction coefficients and increments together";
+    const TITLE: &'static str = "Every case by every method, plate and beam by variants of them too: all meshes, friction coefficients and increments together";
     const QUESTION: &'static str = "Which method solves which case, and at what cost?";
 
     fn columns() -> Vec<Column<Self>> {
@@ -165,32 +159,5 @@ impl Row for ComparisonRow {
 
     fn is_honest(&self) -> bool {
         self.verdict.is_honest()
-    }
-}
-
-impl Row for VariantRow {
-    const NAME: &'static str = "variants";
-    const TITLE: &'static str = "Plate (Mesh I) and beam (Model I) by every method and variant";
-    const QUESTION: &'static str = "What does a variant of a method change: monolithic, without final Newton steps, other signs of Nitsche's θ?";
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "case" "" .key() = r.case.clone(), CASE;
-            "friction" "–" .key().named("μ") = r.friction, FRICTION;
-            "method" "" .key() = r.method.clone(), METHOD;
-            "verdict" "" .shown() = Verdict::or_not_run(r.verdict.as_ref()), VERDICT;
-            "quantity" "" .shown() = r.quantity.clone(), "quantity, place and component that are compared: `reaction top y` of the plate, `displacement P4 z` of the beam";
-            "value" "N/m, m" .digits(8) = r.value, "its value: N/m of the plate, m of the beam; `NaN` where the run has no answer";
-            "deviation" "–" .residual().power(2) = r.deviation, "relative difference from `b-newton` on the same mesh";
-            "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
-            "iterations" "" .shown() = r.iterations, ITERATIONS;
-            "tangent_factorisations" "–" .named("dense") = r.tangent_factorisations, TANGENTS;
-            "global_factorisations" "–" .named("sparse") = r.global_factorisations, GLOBALS;
-            "solve_s" "s" .time().digits(3) = r.solve_s, "solution of the increment";
-        }
-    }
-
-    fn is_honest(&self) -> bool {
-        is_honest(self.verdict.as_ref())
     }
 }

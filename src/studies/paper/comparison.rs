@@ -37,7 +37,7 @@ fn worst<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> Option<&'a Verdict>
 }
 
 /// Sums the runs up by case and method.
-pub fn comparison(runs: &[RunRow]) -> Vec<ComparisonRow> {
+pub fn comparison<'a>(runs: impl IntoIterator<Item = &'a RunRow>) -> Vec<ComparisonRow> {
     let mut groups: BTreeMap<(&str, &str), Vec<&RunRow>> = BTreeMap::new();
     for run in runs {
         let key = (run.key.case.as_str(), run.key.method.as_str());

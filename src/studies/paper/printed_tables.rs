@@ -20,7 +20,7 @@ const BEAMS: [(&str, &str); 2] = [("beam_model1_gauss6", "I"), ("beam_model2", "
 const EXACT_BEAM: &str = "beam_model1";
 /// Variants of Table 2 by friction coefficient.
 const VARIANTS: [(&str, f64); 2] = [("as-printed", 0.0), ("as-stated", 0.1)];
-/// Methods of Tables 1 and 2: the founding paper's own field. All others stand in `variants.csv`.
+/// Methods of Tables 1 and 2: the founding paper's own field. All others stand in `comparison.csv`.
 pub const PAPER_METHODS: [&str; 4] = ["b-newton", "penalty", "augmented-lagrangian", "latin"];
 /// Method name of lines that repeat the published numbers.
 pub const PRINTED: &str = "printed";
