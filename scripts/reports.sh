@@ -46,7 +46,7 @@ for part in $parts; do
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
                 'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
-            keep stress stress_faults stress_invariances stress_methods stress_ladders stress_scenes.csv
+            keep stress stress_faults stress_invariances stress_ladders success stress_scenes.csv success.svg
             cp -r results/stress/cases reports/stress/
             keep random success causes stopping why.csv success.svg
             keep sensitivity safe_windows sensitivity.svg

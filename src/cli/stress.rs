@@ -7,6 +7,7 @@ use super::progress::Bar;
 use super::study::{STOP, shard, watch_for_interruption};
 use crate::files::claim::COMMAND;
 use crate::report::{Bundle, Claim, Plan, Provenance, page, stress as report};
+use crate::studies::analysis::success::success;
 use crate::studies::lab::{Inside, Lab, Shard, Workers};
 use crate::studies::origin::Limits;
 use crate::studies::record::Record;
@@ -117,7 +118,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     claim.commit(&bundle)?;
     show(&summary::faults(&findings), "");
     show(&summary::invariances(&findings), "");
-    show(&summary::methods(&findings), "");
+    show(&success(&summary::records(&findings)), "");
     show(&summary::of_ladders(&findings), "");
     say(format_args!(
         "{} of {total} scenes. Results: {}",

@@ -1,10 +1,11 @@
 //! The files of the stress suite.
 
-use super::{Bundle, Provenance, ReportError, table};
+use super::{Bundle, Provenance, ReportError, figures, table};
+use crate::studies::analysis::success::success;
 use crate::studies::stress::finding::Finding;
 use crate::studies::stress::summary;
 
-/// Faults, invariances, methods, ladders, scenes, the smallest failing cases, provenance.
+/// Faults, invariances, success of the methods, ladders, scenes, the smallest failing cases, provenance.
 ///
 /// # Errors
 /// Those of [`table::add`].
@@ -16,7 +17,9 @@ pub fn bundle(
     let mut bundle = Bundle::new();
     table::add(&mut bundle, &summary::faults(findings), "")?;
     table::add(&mut bundle, &summary::invariances(findings), "")?;
-    table::add(&mut bundle, &summary::methods(findings), "")?;
+    let records = summary::records(findings);
+    table::add(&mut bundle, &success(&records), "")?;
+    figures::success::add(&mut bundle, &success(&records), "")?;
     table::add(&mut bundle, &summary::of_ladders(findings), "")?;
     table::add(&mut bundle, &summary::scenes(seed, findings), "")?;
     for finding in findings {

@@ -32,7 +32,7 @@ use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::record::Record;
 use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, QuantityRow, RunRow};
-use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, MethodRow, SceneRow};
+use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, SceneRow};
 
 /// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -210,7 +210,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     let stress = vec![
         Description::of::<FaultRow>(),
         Description::of::<InvarianceRow>(),
-        Description::of::<MethodRow>(),
         Description::of::<LadderRow>(),
         Description::of::<SceneRow>(),
     ];

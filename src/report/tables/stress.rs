@@ -1,9 +1,9 @@
-//! The stress suite: causes, invariances, methods, scenes.
+//! The stress suite: faults, invariances, ladders, scenes.
 
 use super::words::*;
 use crate::report::table::{Column, Row, columns};
 use crate::studies::stress::finding::Fault;
-use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, MethodRow, SceneRow};
+use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, SceneRow, minimal};
 
 const FAMILY: &str = "`patch-2d`, `patch-3d`: uniform compression, all cracks stick, the answer is known; `slip-2d`, `slip-3d`: pushed and sheared with friction";
 const FAULT: &str = "`right`, or the worst that was found";
@@ -55,35 +55,6 @@ impl Row for InvarianceRow {
     }
 }
 
-impl Row for MethodRow {
-    const NAME: &'static str = "stress_methods";
-    const TITLE: &'static str = "Random scenes: every method, and why it lost";
-    const QUESTION: &'static str = "Which method fails on which kind of body, and for what cause?";
-    const NOTES: &'static str = "An exact method is done where its answer is `solved` to the tier `high`, asked for at 1e-12; an approximate one where it keeps its claim. Scenes are those with an answer: without those that a method declines, and without those where no force within the cones of friction balances the load.";
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "dimension" "" .key().named("dim") = r.dimension, DIMENSION;
-            "method" "" .key() = r.method.clone(), METHOD;
-            "kind" "" .shown() = if r.exact { "exact" } else { "approximate" }, "whether the method's limit are the contact laws";
-            "scenes" "" .shown() = r.scenes, "scenes tried";
-            "done" "" .shown() = r.done, "of these, done what the method is for";
-            "false_claims" "" .shown() = r.false_claims, "claims that the judge refuted";
-            "crashed" "" .shown() = r.crashed, "ended with an error, or at a limit of time or memory";
-            "max_iterations" "" .shown() = r.gave_up[0], "ended without a claim at the limit of iterations";
-            "stalled" "" .shown() = r.gave_up[1], "without progress";
-            "singular_tangent" "" .shown() = r.gave_up[2], "at a matrix that cannot be factored";
-            "mechanism" "" = r.gave_up[3], "at a body that is held by nothing";
-            "diverged" "" .shown() = r.gave_up[5], "with numbers that grew without bound";
-            "rounding" "" .shown() = r.gave_up[7], "with forces so large beside what they move that rounding decides";
-            "iterations_median" "" .shown().named("iterations, median") = r.iterations[0], "median where done";
-            "iterations_max" "" .shown().named("largest") = r.iterations[1], "largest number where done";
-            "friction_max" "–" .shown().significant(3).named("largest μ") = r.friction, "largest friction coefficient at which it was done";
-            "sway_max" "–" .shown().significant(2).named("largest sway") = r.sway, "largest condition, as `sway` of `runs.csv`, at which it was done";
-        }
-    }
-}
-
 impl Row for LadderRow {
     const NAME: &'static str = "stress_ladders";
     const TITLE: &'static str = "One parameter at a time";
@@ -105,7 +76,7 @@ impl Row for LadderRow {
     }
 }
 
-impl Row for SceneRow {
+impl Row for SceneRow<'_> {
     const NAME: &'static str = "stress_scenes";
     const TITLE: &'static str = "Scenes that are not right";
     const QUESTION: &'static str = "What remains broken, and how can it be run again?";
@@ -115,13 +86,13 @@ impl Row for SceneRow {
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
             "seed" "" = r.seed, "seed of the suite";
-            "family" "" .shown() = r.family.name(), FAMILY;
-            "number" "" .shown() = r.number, "number in the family, from 0";
-            "category" "" .shown() = r.category.clone(), "how its cracks lie";
+            "family" "" .shown() = r.finding.scene.family.name(), FAMILY;
+            "number" "" .shown() = r.finding.scene.number, "number in the family, from 0";
+            "category" "" .shown() = r.finding.scene.category.clone(), "how its cracks lie";
             "fault" "" .shown() = r.fault.name(), FAULT;
-            "reason" "" .shown() = r.reason.clone(), "in one line";
-            "error" "–" .residual() = r.error, "largest error of the default method against the closed form, or of the energy identity";
-            "minimal" "" .shown() = r.minimal.clone().unwrap_or_default(), MINIMAL;
+            "reason" "" .shown() = r.finding.reason.clone(), "in one line";
+            "error" "–" .residual() = r.finding.error(), "largest error of the default method against the closed form, or of the energy identity";
+            "minimal" "" .shown() = minimal(r.finding).unwrap_or_default(), MINIMAL;
         }
     }
 }

@@ -1,15 +1,14 @@
-//! Findings summed up: faults, invariances, methods, ladders, and every scene that is not right.
+//! Findings summed up: faults, invariances, ladders, and every scene that is not right; the records of methods go to the analyses of
+//! any records.
 
 use std::collections::BTreeMap;
 
 use super::find::INVARIANT;
-use super::finding::{Fault, Finding, Seen, is_done};
+use super::finding::{Fault, Finding, Seen};
 use super::places::{Ladder, ladders, rung};
 use super::scene::Family;
-use crate::run::verdict::{GIVE_UPS, Verdict};
+use crate::run::verdict::Verdict;
 use crate::studies::record::Record;
-use crate::studies::statistics::quantile;
-use stickslip_methods::Status;
 
 /// Scenes of a family that ended alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,33 +52,6 @@ pub struct InvarianceRow {
     pub worst: String,
 }
 
-/// A method over all scenes of a dimension that have an answer.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MethodRow {
-    /// Space dimension.
-    pub dimension: usize,
-    /// Label.
-    pub method: String,
-    /// Whether its limit are the contact laws.
-    pub exact: bool,
-    /// Scenes tried.
-    pub scenes: usize,
-    /// Of these, done what it is for.
-    pub done: usize,
-    /// Claims that the judge refuted.
-    pub false_claims: usize,
-    /// Errors, time and memory.
-    pub crashed: usize,
-    /// Those that gave up, by status in the order of [`GIVE_UPS`].
-    pub gave_up: [usize; GIVE_UPS.len()],
-    /// Median and largest number of iterations where done.
-    pub iterations: [f64; 2],
-    /// Largest friction coefficient at which it was done.
-    pub friction: f64,
-    /// Largest condition (`sway`) at which it was done.
-    pub sway: f64,
-}
-
 /// A parameter of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LadderRow {
@@ -102,24 +74,13 @@ pub struct LadderRow {
 }
 
 /// A scene that is not right.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SceneRow {
+pub struct SceneRow<'a> {
     /// Seed of the suite.
     pub seed: u64,
-    /// Family.
-    pub family: Family,
-    /// Number.
-    pub number: u64,
-    /// How its cracks lie.
-    pub category: String,
-    /// The worst that was found.
+    /// The scene, and what was found.
+    pub finding: &'a Finding,
+    /// The worst of it.
     pub fault: Fault,
-    /// In one line.
-    pub reason: String,
-    /// Largest error.
-    pub error: f64,
-    /// Its smallest case, as a file of the report.
-    pub minimal: Option<String>,
 }
 
 /// File of the smallest case of a finding.
@@ -190,56 +151,24 @@ pub fn invariances(findings: &[Finding]) -> Vec<InvarianceRow> {
     groups.into_iter().map(row).collect()
 }
 
-/// Every method, by dimension; the scenes are those that have an answer.
-pub fn methods(findings: &[Finding]) -> Vec<MethodRow> {
-    let mut groups: BTreeMap<(usize, &str), Vec<&Record>> = BTreeMap::new();
-    let none = [Fault::NoEquilibrium, Fault::FrictionLimit].map(Some);
+/// Records of the random scenes whose body is sound and has an answer, in classes by dimension.
+pub fn records(findings: &[Finding]) -> Vec<Record> {
+    let none = [
+        Fault::SuspectMesh,
+        Fault::NoEquilibrium,
+        Fault::FrictionLimit,
+    ];
     let random = findings.iter().filter(|f| f.scene.family.is_random());
-    for finding in random.filter(|f| !none.contains(&f.fault)) {
-        for record in &finding.records {
-            let key = (finding.scene.dim, record.found.method.as_str());
-            groups.entry(key).or_default().push(record);
-        }
-    }
-    let row = |((dimension, method), own): ((usize, &str), Vec<&Record>)| {
-        let without = Verdict::GaveUp(Status::NoEquilibrium);
-        let tried = |own: &&&Record| {
-            let verdict = &own.found.verdict;
-            !matches!(verdict, Verdict::Refused(_)) && *verdict != without
-        };
-        let own: Vec<&Record> = own.iter().filter(tried).copied().collect();
-        let count = |of: &dyn Fn(&Record) -> bool| own.iter().filter(|own| of(own)).count();
-        let done: Vec<&Record> = own.iter().filter(|own| is_done(own)).copied().collect();
-        let iterations = || {
-            done.iter()
-                .map(|own| own.found.sum(|step| step.iterations) as f64)
-        };
-        let largest =
-            |of: &dyn Fn(&Record) -> f64| done.iter().map(|own| of(own)).fold(0.0, f64::max);
-        let sway = |own: &Record| {
-            let steps = own.found.increments.iter();
-            steps.map(|step| step.judge.sway).fold(0.0, f64::max)
-        };
-        MethodRow {
-            dimension,
-            method: method.into(),
-            exact: own.first().is_some_and(|own| own.found.exact),
-            scenes: own.len(),
-            done: done.len(),
-            false_claims: count(&|own| own.found.verdict == Verdict::FalseClaim),
-            crashed: count(&|own| {
-                let verdict = &own.found.verdict;
-                verdict.kind().is_limit() || matches!(verdict, Verdict::Crashed(_))
-            }),
-            gave_up: std::array::from_fn(|k| {
-                count(&|own| own.found.verdict == Verdict::GaveUp(GIVE_UPS[k]))
-            }),
-            iterations: [0.5, 1.0].map(|q| quantile(q, iterations())),
-            friction: largest(&|own| own.asked.friction.iter().copied().fold(0.0, f64::max)),
-            sway: largest(&sway),
-        }
+    let answered = random.filter(|f| f.fault.is_none_or(|fault| !none.contains(&fault)));
+    let of = |finding: &Finding| {
+        let class = format!("{}D", finding.scene.dim);
+        let own = finding.records.clone().into_iter();
+        own.map(move |record| Record {
+            class: class.clone(),
+            ..record
+        })
     };
-    groups.into_iter().map(row).collect()
+    answered.flat_map(of).collect()
 }
 
 /// Every ladder that has findings.
@@ -271,23 +200,17 @@ pub fn of_ladders(findings: &[Finding]) -> Vec<LadderRow> {
     ladders().iter().filter_map(row).collect()
 }
 
-/// Every scene that is not right, but those beyond the mesh.
-pub fn scenes(seed: u64, findings: &[Finding]) -> Vec<SceneRow> {
-    let row = |finding: &Finding| {
-        Some(SceneRow {
-            seed,
-            family: finding.scene.family,
-            number: finding.scene.number,
-            category: finding.scene.category.clone(),
-            fault: finding.fault?,
-            reason: finding.reason.clone(),
-            error: finding.error(),
-            minimal: minimal(finding),
-        })
-    };
-    // Those beyond any mesh of such cells are as many as were drawn.
+/// Every scene that is not right, but those beyond the mesh: they are as many as were drawn.
+pub fn scenes(seed: u64, findings: &[Finding]) -> Vec<SceneRow<'_>> {
     let told = findings.iter().filter(|f| f.fault != Some(Fault::Beyond));
-    told.filter_map(row).collect()
+    told.filter_map(|finding| {
+        finding.fault.map(|fault| SceneRow {
+            seed,
+            finding,
+            fault,
+        })
+    })
+    .collect()
 }
 
 /// Whether the program did nothing wrong: no fault, and no scene with one answer that the default method missed.
