@@ -122,11 +122,6 @@ impl Problem {
     }
 }
 
-/// Whether a case runs end to end with all methods too.
-pub fn runs_all_methods(problem: &Problem) -> bool {
-    problem.case == "plate_mesh1"
-}
-
 /// Makes every stage run on one thread, as the methods do.
 pub fn one_thread() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
@@ -135,10 +130,6 @@ pub fn one_thread() {
 
 /// Says that a benchmark is not run.
 pub fn left_out(name: &BenchmarkName, why: &dyn std::fmt::Display) {
-    let BenchmarkName {
-        group,
-        function,
-        value,
-    } = name;
-    println!("left out: {group}/{function}/{value}: {why}");
+    let (group, function) = (&name.group, &name.function);
+    println!("left out: {group}/{function}/{}: {why}", name.value);
 }

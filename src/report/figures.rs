@@ -15,6 +15,7 @@ pub mod profile;
 mod quantity_name;
 pub mod residual;
 mod runs;
+pub use runs::distinct;
 pub mod scaling;
 pub mod sensitivity;
 pub mod stages;

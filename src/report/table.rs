@@ -7,6 +7,7 @@ mod column;
 mod latex;
 mod readable;
 mod schema;
+mod view;
 
 use std::cmp::Ordering;
 
@@ -14,6 +15,7 @@ pub(crate) use column::columns;
 pub use column::{About, Column, Digits, Value};
 pub use readable::{Align, Heading, Readable};
 pub use schema::Description;
+pub use view::{Pivot, Shown, View};
 
 use super::{Bundle, ReportError};
 
@@ -41,6 +43,8 @@ pub trait Row: Sized {
     const READABLE: bool = true;
     /// Order of the rows.
     const ORDER: Order<Self> = Order::Keys;
+    /// How it is turned for reading, where its file is long.
+    const PIVOT: Option<Pivot> = None;
 
     /// The columns, in order.
     fn columns() -> Vec<Column<Self>>;
@@ -112,26 +116,27 @@ pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
 
 /// The columns for reading, rows sorted; `note` goes behind the title.
 pub fn readable<R: Row>(rows: &[R], note: &str) -> Readable {
-    let rows = sorted(rows);
-    let mut columns = R::columns();
-    columns.retain(|column| column.about.shown);
-    let heading = |column: &Column<R>| Heading {
-        name: column.about.heading(),
-        unit: column.about.shown_unit().to_owned(),
-        align: Align::of(
-            column.about.shown_digits,
-            rows.iter().map(|row| (column.get)(row)),
-        ),
-    };
+    let (rows, columns) = (sorted(rows), R::columns());
     let cell = |row: &R, column: &Column<R>| match column.about.unit {
         "s" if !row.is_honest() => "–".to_owned(),
         _ => column.read(row),
     };
     let line = |row: &&R| columns.iter().map(|column| cell(row, column)).collect();
+    let cells: Vec<Vec<String>> = rows.iter().map(line).collect();
+    let about: Vec<About> = columns.iter().map(|column| column.about).collect();
+    let view = View::of(R::PIVOT, &about, &cells);
+    let heading = |shown: &Shown| {
+        let Column { about, get } = &columns[shown.from];
+        Heading {
+            name: shown.heading.clone(),
+            unit: shown.unit.to_owned(),
+            align: Align::of(about.shown_digits, rows.iter().map(|row| get(row))),
+        }
+    };
     Readable {
-        title: format!("{}{note}", R::TITLE),
-        columns: columns.iter().map(heading).collect(),
-        rows: rows.iter().map(line).collect(),
+        title: format!("{}{}{note}", R::TITLE, view.note),
+        columns: view.columns.iter().map(heading).collect(),
+        rows: view.rows,
     }
 }
 

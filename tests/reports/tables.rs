@@ -188,13 +188,18 @@ fn paper_tables_show_printed_values_beside_ours() {
 
     let markdown = text(&bundle, "table1.md");
     assert!(
-        markdown.contains("| I | 0.1 | b-newton | 973.543 | 973.3 | 2.5e-4 | solved |"),
+        markdown.contains("| I | 0.1 | 973.3 | 973.543 |  |")
+            && markdown.contains("| penalty, gave-up: max-iterations |"),
         "{markdown}"
     );
     let latex = text(&bundle, "table2.tex");
-    assert!(latex.contains("S[table-format=1.7]"), "{latex}");
-    assert_eq!(latex.matches(" & 0.1475015 & ").count(), 1, "{latex}");
-    assert_eq!(latex.matches(" & 0.1475019 & ").count(), 1, "{latex}");
+    for part in [
+        "{largest printed {[}\\unit{mm}]}",
+        " & 0.529469 & ",
+        "\\num{4.2e-7}",
+    ] {
+        assert!(latex.contains(part), "{part}: {latex}");
+    }
     let terminal = readable(&table2_rows(), "").terminal();
     assert!(
         terminal.lines().all(|line| line.chars().count() < 160),

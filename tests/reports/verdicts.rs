@@ -93,7 +93,12 @@ fn read_back<R: Row>(row: R, column: &str) -> Verdict {
     let record = reader.records().next().unwrap().unwrap();
     let text = record[place.unwrap()].to_owned();
     if column == "verdict" && R::READABLE {
-        assert!(readable(&rows, "").rows[0].contains(&text), "{text}");
+        let read = readable(&rows, "");
+        let mut heads = read.columns.iter().map(|own| own.name.as_str());
+        // A table of two ways marks what is not solved, in its headings.
+        let marked = text == "solved" || heads.any(|head| head.contains(&text));
+        let shown = read.rows[0].contains(&text);
+        assert!(shown || R::PIVOT.is_some() && marked, "{text}");
     }
     text.parse().unwrap()
 }
@@ -197,8 +202,9 @@ fn facts(page: &str) -> Vec<(String, usize)> {
 fn every_kind_is_counted_once_on_the_page() {
     let all = runs();
     let html = page::of_folder(folder_of(&all).path()).unwrap();
-    let (increments, counts) = (facts(&html)[0].clone(), &facts(&html)[1..]);
-    assert_eq!(increments, ("increments run".into(), all.len()));
+    let counts = facts(&html);
+    let told = format!("solved, of {} increments: the contact laws hold", all.len());
+    assert!(counts.contains(&(told, 1)), "{counts:?}");
     // Refused ones are neither answers nor failures.
     let of = |label: &str| counts.iter().find(|c| c.0.starts_with(label)).map(|c| c.1);
     let found = ["solved", "approximate", "failed"].map(of);

@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::folder::{Figure, Figures, Link, Origin, split};
 use super::{Folder, PageError, Sheet};
-use crate::report::table::{About, Description};
+use crate::report::table::{About, Description, Shown, View};
 use crate::run::verdict::{NOT_RUN, Verdict, VerdictKind};
 use crate::studies::rows::{MET, MISSED_AS_DOCUMENTED};
 
@@ -60,13 +60,14 @@ pub struct Fact {
 pub struct Grid {
     id: String,
     title: String,
-    columns: Vec<About>,
+    /// Where cells come from, and what stands above them.
+    columns: Vec<(About, Shown)>,
     rows: Vec<Vec<String>>,
     links: Vec<Link>,
 }
 
 impl Grid {
-    /// The columns of a table that are for reading; times only in rows with an honest verdict.
+    /// What of a table is read; times only in rows with an honest verdict.
     ///
     /// # Errors
     /// Those of [`Sheet::texts`].
@@ -76,12 +77,12 @@ impl Grid {
         folder: &Folder,
         path: &str,
     ) -> Result<Self, PageError> {
-        let shown = table.columns.iter().filter(|column| column.shown);
-        let columns: Vec<About> = shown.copied().collect();
+        // Columns that are only in newer files are not missed.
+        let has = |column: &&About| column.shown || sheet.texts(column.name).is_ok();
+        let columns: Vec<About> = table.columns.iter().filter(has).copied().collect();
         let cells = columns.iter().map(|column| sheet.texts(column.name));
         let cells = cells.collect::<Result<Vec<_>, _>>()?;
         let verdict = columns.iter().position(|column| column.name == "verdict");
-        let verdict = verdict.filter(|_| table.columns.iter().any(|column| column.unit == "s"));
         let row = |line: usize| {
             let honest = |k: usize| {
                 let parsed = cells[k][line].parse::<Verdict>();
@@ -94,19 +95,22 @@ impl Grid {
             };
             (0..columns.len()).map(cell).collect()
         };
-        let rows = (0..sheet.size().0).map(row).collect();
+        let rows: Vec<Vec<String>> = (0..sheet.size().0).map(row).collect();
+        let view = View::of(table.pivot, &columns, &rows);
         let stem = path.strip_suffix(".csv").unwrap_or(path);
         let (place, name) = split(path);
         let alone = place.is_empty() || folder.named(name).len() == 1;
         let clean = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let place = match alone {
+            true => String::new(),
+            false => format!(" ({place})"),
+        };
+        let shown = view.columns.into_iter();
         Ok(Self {
             id: format!("table-{}", stem.chars().map(clean).collect::<String>()),
-            title: match alone {
-                true => table.title.to_owned(),
-                false => format!("{} ({place})", table.title),
-            },
-            columns,
-            rows,
+            title: format!("{}{}{place}", table.title, view.note),
+            columns: shown.map(|shown| (columns[shown.from], shown)).collect(),
+            rows: view.rows,
             links: folder.forms(stem),
         })
     }
@@ -213,16 +217,16 @@ fn table(grid: &Grid) -> Markup {
             div.scroll role="region" aria-labelledby=(title) tabindex="0" {
                 table #(grid.id) {
                     thead { tr {
-                        @for (column, numeric) in grid.columns.iter().zip(&numeric) {
+                        @for ((_, shown), numeric) in grid.columns.iter().zip(&numeric) {
                             th scope="col" class=[numeric.then_some("n")] {
-                                (column.heading())
-                                @if !column.shown_unit().is_empty() { " " span.unit { "[" (column.shown_unit()) "]" } }
+                                (shown.heading)
+                                @if !shown.unit.is_empty() { " " span.unit { "[" (shown.unit) "]" } }
                             }
                         }
                     } }
                     tbody {
                         @for row in &grid.rows {
-                            tr { @for (k, cell) in row.iter().enumerate() { (data(cell, &grid.columns[k], numeric[k])) } }
+                            tr { @for (k, cell) in row.iter().enumerate() { (data(cell, &grid.columns[k].0, numeric[k])) } }
                             "\n"
                         }
                     }
@@ -236,7 +240,7 @@ fn data(cell: &str, column: &About, numeric: bool) -> Markup {
     if column.name == "verdict" {
         return html! { td { span class=(verdict_class(cell)) { (cell) } } };
     }
-    if !numeric {
+    if !numeric && (column.shown_digits.is_none() || cell.parse::<f64>().is_err()) {
         return html! { td { (cell) } };
     }
     let text = match cell.parse::<f64>() {

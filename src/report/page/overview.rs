@@ -2,6 +2,7 @@
 
 use super::html::{Block, Fact, Section};
 use super::{Budget, Folder, PageError};
+use crate::report::figures::distinct;
 use crate::report::number::significant;
 use crate::run::verdict::{Verdict, VerdictKind};
 
@@ -52,7 +53,7 @@ pub fn section(folder: &Folder, budget: &mut Budget) -> Result<Option<Section>, 
     }))
 }
 
-/// Counts of runs and expected numbers, in the words of the terminal.
+/// Answers: how near the printed tables are, whether known numbers are met, who failed.
 fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
     let mut facts = Vec::new();
     let mut fact = |value: String, label: String, section: &'static str| {
@@ -62,23 +63,41 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
             section,
         });
     };
-    if folder.has("runs.csv") {
-        let verdicts: Vec<Verdict> = folder.sheet("runs.csv")?.parsed("verdict")?;
-        let section = match folder.has("comparison.csv") {
-            true => "methods",
-            false => "runs",
-        };
-        let count = |wanted: fn(&Verdict) -> bool| {
-            let found = verdicts.iter().filter(|verdict| wanted(verdict));
-            found.count().to_string()
-        };
-        fact(verdicts.len().to_string(), "increments run".into(), section);
-        let solved = count(|v| v.kind() == VerdictKind::Solved);
-        fact(solved, "solved: the contact laws hold".into(), section);
-        let own = count(|v| v.kind() == VerdictKind::Approximate);
-        fact(own, "approximate: own laws solved".into(), section);
-        let failed = count(Verdict::is_failure);
-        fact(failed, "failed".into(), section);
+    if folder.has("table1.csv") {
+        let sheet = folder.sheet("table1.csv")?;
+        let (meshes, verdicts) = (sheet.texts("mesh")?, sheet.texts("verdict")?);
+        let off = sheet.texts("relative_difference")?;
+        let rows = || meshes.iter().zip(&verdicts).zip(&off);
+        for mesh in distinct(meshes.iter()) {
+            let solved = |verdict: &str| verdict.parse().is_ok_and(|v: Verdict| v.is_solved());
+            let own = rows().filter(|((own, verdict), _)| *own == mesh && solved(verdict));
+            let off = own.filter_map(|(_, off)| off.parse::<f64>().ok());
+            let worst = off.map(f64::abs).fold(f64::NAN, f64::max);
+            if worst.is_finite() {
+                let label = format!("Table 1, Mesh {mesh}: largest distance from the print");
+                fact(
+                    format!("{} %", significant(100.0 * worst, 2)),
+                    label,
+                    "paper",
+                );
+            }
+        }
+    }
+    if folder.has("table2.csv") {
+        let sheet = folder.sheet("table2.csv")?;
+        let variants = sheet.texts("variant")?;
+        let rows = variants.iter().zip(sheet.texts("max_difference_mm")?);
+        let own = rows.filter(|(variant, _)| **variant == "as-printed");
+        let worst = own.filter_map(|(_, off)| off.parse::<f64>().ok());
+        let worst = worst.fold(f64::NAN, f64::max);
+        if worst.is_finite() {
+            let label = "Table 2, frictionless as printed: largest distance from the print";
+            fact(
+                format!("{} mm", significant(worst, 1)),
+                label.into(),
+                "paper",
+            );
+        }
     }
     if folder.has("expectations_by_case.csv") {
         let sheet = folder.sheet("expectations_by_case.csv")?;
@@ -93,22 +112,25 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
         };
         fact(format!("{stated} of {numbers}"), label, "expected");
     }
-    if folder.has("table1.csv") {
-        let sheet = folder.sheet("table1.csv")?;
-        let differences = sheet.texts("relative_difference")?.into_iter();
-        let own = differences.zip(sheet.texts("verdict")?);
-        let solved =
-            own.filter(|(_, verdict)| verdict.parse().is_ok_and(|v: Verdict| v.is_solved()));
-        let numbers = solved.filter_map(|(difference, _)| difference.parse::<f64>().ok());
-        let worst = numbers.map(f64::abs).fold(f64::NAN, f64::max);
-        if worst.is_finite() {
-            let label = "largest distance of a solved run from the printed Table 1";
-            fact(
-                format!("{} %", significant(100.0 * worst, 2)),
-                label.into(),
-                "paper",
-            );
-        }
+    if folder.has("runs.csv") {
+        let verdicts: Vec<Verdict> = folder.sheet("runs.csv")?.parsed("verdict")?;
+        let section = match folder.has("comparison.csv") {
+            true => "methods",
+            false => "runs",
+        };
+        let count = |wanted: fn(&Verdict) -> bool| {
+            let found = verdicts.iter().filter(|verdict| wanted(verdict));
+            found.count().to_string()
+        };
+        let solved = count(|v| v.kind() == VerdictKind::Solved);
+        let label = format!(
+            "solved, of {} increments: the contact laws hold",
+            verdicts.len()
+        );
+        fact(solved, label, section);
+        let own = count(|v| v.kind() == VerdictKind::Approximate);
+        fact(own, "approximate: own laws solved".into(), section);
+        fact(count(Verdict::is_failure), "failed".into(), section);
     }
     Ok(facts)
 }

@@ -1,7 +1,7 @@
 //! What is known of a table without its rows: for `docs/schema.md` and for the page, which reads files.
 
 use super::readable::escape_markdown;
-use super::{About, Row};
+use super::{About, Pivot, Row};
 
 /// A table that some command writes.
 #[derive(Debug, Clone)]
@@ -18,6 +18,8 @@ pub struct Description {
     pub readable: bool,
     /// Columns of the CSV file.
     pub columns: Vec<About>,
+    /// How it is turned for reading.
+    pub pivot: Option<Pivot>,
 }
 
 impl Description {
@@ -30,6 +32,7 @@ impl Description {
             notes: R::NOTES,
             readable: R::READABLE,
             columns: R::columns().iter().map(|column| column.about).collect(),
+            pivot: R::PIVOT,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::words::*;
-use crate::report::table::{Column, Order, Row, columns};
+use crate::report::table::{Column, Order, Pivot, Row, columns};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::as_printed;
 use crate::studies::paper::comparison::ComparisonRow;
@@ -26,6 +26,11 @@ impl Row for Table1Row {
             .cmp(&b.mesh)
             .then(a.friction.total_cmp(&b.friction))
             .then_with(|| compare_methods(&a.method, &b.method))
+    });
+    const PIVOT: Option<Pivot> = Some(Pivot {
+        rows: &["mesh", "friction", "printed_mn_per_m"],
+        across: "method",
+        cell: "reaction_mn_per_m",
     });
 
     fn columns() -> Vec<Column<Self>> {
@@ -52,6 +57,11 @@ impl Row for Table2Row {
             .cmp(&(&b.model, &b.variant, &b.component))
             .then_with(|| compare_methods(&a.method, &b.method))
     });
+    const PIVOT: Option<Pivot> = Some(Pivot {
+        rows: &["model", "variant", "component", "largest_printed_mm"],
+        across: "method",
+        cell: "max_difference_mm",
+    });
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -66,8 +76,9 @@ impl Row for Table2Row {
             "p5_mm" "mm" .named("P5").fixed(7) = r.p_mm[4], "displacement of P5";
             "p6_mm" "mm" .named("P6").fixed(7) = r.p_mm[5], "displacement of P6";
             "p7_mm" "mm" .named("P7").fixed(7) = r.p_mm[6], "displacement of P7";
-            "max_difference_mm" "mm" .named("max. diff.").significant(3).power(2) = r.max_difference_mm, "largest absolute difference from the printed line";
+            "max_difference_mm" "mm" .named("largest difference from the print").significant(3).power(2) = r.max_difference_mm, "largest absolute difference from the printed line";
             "verdict" "" .shown() = if r.method == PRINTED { String::new() } else { Verdict::or_not_run(r.verdict.as_ref()) }, VERDICT;
+            "largest_printed_mm" "mm" .named("largest printed") = r.largest_printed_mm(), "the displacement of largest size in the printed line";
         }
     }
 }

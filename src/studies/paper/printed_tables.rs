@@ -83,6 +83,8 @@ pub struct Table2Row {
     pub method: String,
     /// Displacement of P1 … P7 (mm); NaN where the method gave no solution.
     pub p_mm: [f64; 7],
+    /// Printed displacement of P1 … P7 (mm).
+    pub printed_mm: [f64; 7],
     /// Largest |computed − printed| over the seven points (mm); none for the printed line itself.
     pub max_difference_mm: Option<f64>,
     /// Claim × check; none where there is no such run, as for the printed line.
@@ -103,9 +105,19 @@ impl Table2Row {
             component: component.into(),
             method: PRINTED.into(),
             p_mm,
+            printed_mm: p_mm,
             max_difference_mm: None,
             verdict: None,
         }
+    }
+
+    /// The printed displacement of largest size (mm).
+    pub fn largest_printed_mm(&self) -> f64 {
+        let printed = self.printed_mm.into_iter();
+        printed.fold(
+            0.0,
+            |most: f64, p| if p.abs() > most.abs() { p } else { most },
+        )
     }
 
     /// A computed line to stand below the printed line `reference`.
