@@ -3,7 +3,7 @@
 use super::kind::Kind;
 use super::performance::heading;
 use super::runs::distinct;
-use crate::report::plot::{Axis, Figure, Panel, Series, Style, plain};
+use crate::report::plot::{Axis, Figure, Panel, Series, Style, plain, rank};
 use crate::report::{Bundle, ReportError};
 use crate::studies::analysis::costs::Costs;
 use crate::studies::analysis::ranking::{PENALTY, Ranking, ranking};
@@ -70,22 +70,25 @@ pub fn add(bundle: &mut Bundle, sets: &[TestSet<'_>], caveat: &str) -> Result<()
         }
         panels.push(panel);
     }
-    let told = |(tier, ranking): &(Tier, Ranking<'_>)| {
-        let tied = ranking.standings.iter().filter(|s| s.rank[0] == 1).count();
-        let first = ranking.standings.first().map_or("", |s| s.method);
-        let others = match tied {
-            0 | 1 => String::new(),
-            2 => " (not apart from one other)".to_owned(),
-            _ => format!(" (not apart from {} others)", tied - 1),
-        };
-        (plain(first), format!("{}{others} at {tier}", plain(first)))
+    let tied = |ranking: &Ranking<'_>| {
+        let first = ranking.standings.iter().filter(|s| s.rank[0] == 1);
+        let mut names: Vec<&str> = first.map(|s| s.method).collect();
+        names.sort_by_key(|name| (rank(name), *name));
+        let names: Vec<String> = names.into_iter().map(plain).collect();
+        match names.as_slice() {
+            [one] => one.clone(),
+            all => format!("{}, a tie", all.join(", ")),
+        }
     };
-    let told: Vec<(String, String)> = found.iter().map(told).collect();
-    let title = match distinct(told.iter().map(|(first, _)| first))[..] {
-        [one] => format!("{one} has the least mean time at every accuracy"),
+    let told: Vec<String> = found.iter().map(|(_, ranking)| tied(ranking)).collect();
+    let title = match distinct(&told)[..] {
+        [one] => format!("Least mean time at every accuracy: {one}"),
         _ => {
-            let parts: Vec<&str> = told.iter().map(|(_, part)| part.as_str()).collect();
-            format!("Least mean time: {}", parts.join(", "))
+            let parts = found.iter().zip(&told);
+            let parts: Vec<String> = parts
+                .map(|((tier, _), names)| format!("{tier}: {names}"))
+                .collect();
+            format!("Least mean time, {}", parts.join("; "))
         }
     };
     let caption = format!(

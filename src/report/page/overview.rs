@@ -63,13 +63,13 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
             section,
         });
     };
+    let solved = |verdict: &str| verdict.parse().is_ok_and(|v: Verdict| v.is_solved());
     if folder.has("table1.csv") {
         let sheet = folder.sheet("table1.csv")?;
         let (meshes, verdicts) = (sheet.texts("mesh")?, sheet.texts("verdict")?);
         let off = sheet.texts("relative_difference")?;
         let rows = || meshes.iter().zip(&verdicts).zip(&off);
         for mesh in distinct(meshes.iter()) {
-            let solved = |verdict: &str| verdict.parse().is_ok_and(|v: Verdict| v.is_solved());
             let own = rows().filter(|((own, verdict), _)| *own == mesh && solved(verdict));
             let off = own.filter_map(|(_, off)| off.parse::<f64>().ok());
             let worst = off.map(f64::abs).fold(f64::NAN, f64::max);
@@ -85,9 +85,11 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
     }
     if folder.has("table2.csv") {
         let sheet = folder.sheet("table2.csv")?;
-        let variants = sheet.texts("variant")?;
-        let rows = variants.iter().zip(sheet.texts("max_difference_mm")?);
-        let own = rows.filter(|(variant, _)| **variant == "as-printed");
+        let (variants, verdicts) = (sheet.texts("variant")?, sheet.texts("verdict")?);
+        let rows = variants.iter().zip(&verdicts);
+        let rows = rows.zip(sheet.texts("max_difference_mm")?);
+        let own =
+            rows.filter(|((variant, verdict), _)| **variant == "as-printed" && solved(verdict));
         let worst = own.filter_map(|(_, off)| off.parse::<f64>().ok());
         let worst = worst.fold(f64::NAN, f64::max);
         if worst.is_finite() {
