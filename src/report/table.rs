@@ -57,45 +57,39 @@ pub trait Row: Sized {
 
 /// Rows in the order of their table.
 pub fn sorted<R: Row>(rows: &[R]) -> Vec<&R> {
-    let mut sorted: Vec<&R> = rows.iter().collect();
-    match R::ORDER {
-        Order::Given => {}
-        Order::By(compare) => sorted.sort_by(|a, b| compare(a, b)),
+    let order = match R::ORDER {
+        Order::Given => return rows.iter().collect(),
+        Order::By(compare) => ordered(rows.len(), &|a, b| compare(&rows[a], &rows[b])),
         Order::Keys => {
             let keys: Vec<fn(&R) -> Value> = R::columns()
                 .into_iter()
                 .filter_map(|column| column.about.key.then_some(column.get))
                 .collect();
-            sorted.sort_by_cached_key(|row| Keys(keys.iter().map(|get| get(row)).collect()));
+            let of = |row| keys.iter().map(|get| get(row)).collect();
+            let keys: Vec<Vec<Value>> = rows.iter().map(of).collect();
+            ordered(rows.len(), &|a, b| compare_keys(&keys[a], &keys[b]))
         }
-    }
-    sorted
+    };
+    order.into_iter().map(|k| &rows[k]).collect()
 }
 
-/// Values that rows are sorted by.
-#[derive(PartialEq)]
-struct Keys(Vec<Value>);
-
-impl Eq for Keys {}
-
-impl PartialOrd for Keys {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
+/// Places of so many rows in their order. Not generic: a sort is compiled once, not for every table.
+fn ordered(count: usize, compare: &dyn Fn(usize, usize) -> Ordering) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|a, b| compare(*a, *b));
+    order
 }
 
-impl Ord for Keys {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let pairs = self.0.iter().zip(&other.0);
-        pairs.fold(Ordering::Equal, |order, pair| {
-            order.then_with(|| match pair {
-                (Value::Text(a), Value::Text(b)) => a.cmp(b),
-                (Value::Whole(a), Value::Whole(b)) => a.cmp(b),
-                (Value::Real(a), Value::Real(b)) => a.total_cmp(b),
-                (a, b) => (*a != Value::Empty).cmp(&(*b != Value::Empty)),
-            })
+/// Order of values that rows are sorted by.
+fn compare_keys(a: &[Value], b: &[Value]) -> Ordering {
+    a.iter().zip(b).fold(Ordering::Equal, |order, pair| {
+        order.then_with(|| match pair {
+            (Value::Text(a), Value::Text(b)) => a.cmp(b),
+            (Value::Whole(a), Value::Whole(b)) => a.cmp(b),
+            (Value::Real(a), Value::Real(b)) => a.total_cmp(b),
+            (a, b) => (*a != Value::Empty).cmp(&(*b != Value::Empty)),
         })
-    }
+    })
 }
 
 /// The contents of the CSV file, rows sorted.
@@ -103,15 +97,29 @@ impl Ord for Keys {
 /// # Errors
 /// [`ReportError::Csv`] from the writer.
 pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
-    let columns = R::columns();
+    let (columns, rows) = (R::columns(), sorted(rows));
+    let names = columns.iter().map(|column| column.about.name.to_owned());
+    write(names.collect(), rows.len(), &|k, line| {
+        line.extend(columns.iter().map(|column| column.csv(rows[k])));
+    })
+}
+
+/// A header and so many lines, each filled in when its turn comes; compiled once, like [`ordered`].
+fn write(
+    header: Vec<String>,
+    lines: usize,
+    fill: &dyn Fn(usize, &mut Vec<String>),
+) -> Result<Vec<u8>, ReportError> {
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(columns.iter().map(|column| column.about.name))?;
-    for row in sorted(rows) {
-        writer.write_record(columns.iter().map(|column| column.csv(row)))?;
+    writer.write_record(&header)?;
+    let mut line = header;
+    for k in 0..lines {
+        line.clear();
+        fill(k, &mut line);
+        writer.write_record(&line)?;
     }
-    writer
-        .into_inner()
-        .map_err(|e| ReportError::Csv(e.into_error().into()))
+    let written = writer.into_inner();
+    written.map_err(|e| ReportError::Csv(e.into_error().into()))
 }
 
 /// The columns for reading, rows sorted; `note` goes behind the title.
@@ -145,10 +153,18 @@ pub fn readable<R: Row>(rows: &[R], note: &str) -> Readable {
 /// # Errors
 /// Those of [`csv`] and [`Bundle::add`].
 pub fn add<R: Row>(bundle: &mut Bundle, rows: &[R], note: &str) -> Result<(), ReportError> {
-    let name = R::NAME;
-    bundle.add(format!("{name}.csv"), csv(rows)?)?;
-    if R::READABLE {
-        let table = readable(rows, note);
+    let read = R::READABLE.then(|| readable(rows, note));
+    add_forms(bundle, R::NAME, csv(rows)?, read)
+}
+
+fn add_forms(
+    bundle: &mut Bundle,
+    name: &str,
+    csv: Vec<u8>,
+    read: Option<Readable>,
+) -> Result<(), ReportError> {
+    bundle.add(format!("{name}.csv"), csv)?;
+    if let Some(table) = read {
         bundle.add(format!("{name}.md"), table.markdown())?;
         bundle.add(format!("{name}.tex"), table.latex(&format!("tab:{name}")))?;
     }

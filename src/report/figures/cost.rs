@@ -1,5 +1,7 @@
 //! What the methods cost: time of every method on every case, relative to the fastest.
 
+use std::cmp::Reverse;
+
 use super::kind::Kind;
 use super::runs::distinct;
 use crate::report::number::significant;
@@ -11,34 +13,38 @@ use crate::studies::paper::comparison::ComparisonRow;
 /// What it is.
 pub static KIND: Kind = Kind {
     file: "cost.svg",
-    question: "Which method is fastest on which case, by how much, and who fails?",
-    shows: "Solve time of every method on every case as a multiple of the fastest one that solved it (iterations \
-            where no times are known). ≈: solved laws of its own; –: declined; ×: any other verdict.",
+    question: "Which method is far from the fastest on which case, by how much, and who fails?",
+    shows: "Solve time of every method on every case as a multiple of the fastest one that solved it, from twice on: a \
+            single run tells no less apart. ≈: solved laws of its own; –: declined; ×: any other verdict.",
 };
 
 /// Multiple with the full tint.
 const FULL: f64 = 1000.0;
+
+/// Multiple of the least time below which single runs are not told apart.
+const NEAR: f64 = 2.0;
+
+/// Methods that the title names.
+const NAMED: usize = 3;
 
 /// The figure of all cases.
 ///
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, rows: &[ComparisonRow]) -> Result<(), ReportError> {
-    // Where nothing did what it claims there is nothing to draw.
-    if !rows.iter().any(|row| row.verdict.is_honest()) {
+    // Without times there is nothing to draw: iterations of different methods are no common measure.
+    if !rows.iter().any(|row| row.solve_s > 0.0) {
         return Ok(());
     }
     let mut cases = distinct(rows.iter().map(|row| row.case.as_str()));
     cases.sort_unstable();
     let mut names = distinct(rows.iter().map(|row| row.method.as_str()));
     names.sort_by_key(|name| (rank(name), *name));
-    let timed = rows.iter().any(|row| row.solve_s > 0.0);
-    let cost = |row: &ComparisonRow| match (row.verdict.is_solved(), timed) {
-        (true, true) => row.solve_s,
-        (true, false) => row.iterations.max(1) as f64,
-        _ => f64::NAN,
+    let cost = |row: &ComparisonRow| match row.verdict.is_solved() {
+        true => row.solve_s,
+        false => f64::NAN,
     };
-    let mut wins = vec![0; names.len()];
+    let mut near = vec![0; names.len()];
     let mut table = Vec::new();
     for case in &cases {
         let of = |name: &&str| {
@@ -53,29 +59,36 @@ pub fn add(bundle: &mut Bundle, rows: &[ComparisonRow]) -> Result<(), ReportErro
         let mut cells = Vec::new();
         for (column, name) in names.iter().enumerate() {
             let ratio = costs[column] / least;
-            wins[column] += usize::from(ratio == 1.0);
+            near[column] += usize::from(ratio <= NEAR);
             let text = match of(name).map(|row| row.verdict.kind()) {
+                _ if ratio <= NEAR => String::new(),
                 _ if ratio.is_finite() => significant(ratio, if ratio < 99.5 { 2 } else { 3 }),
                 None => String::new(),
                 Some(VerdictKind::Approximate) => "≈".into(),
                 Some(VerdictKind::Refused) => "–".into(),
                 Some(_) => "×".into(),
             };
-            let (tint, below) = (ratio.ln() / FULL.ln(), String::new());
+            let tint = match ratio <= NEAR {
+                true => 0.0,
+                false => ratio.ln() / FULL.ln(),
+            };
+            let below = String::new();
             cells.push(Cell { tint, text, below });
         }
         table.push((plain(case), cells));
     }
-    let (what, best) = match timed {
-        true => ("solve time", "fastest"),
-        false => ("iterations", "done in the fewest iterations"),
-    };
-    let most = wins.iter().copied().max().unwrap_or(0);
-    let leader = names.iter().zip(&wins).find(|(_, count)| **count == most);
-    let leader = plain(leader.map_or("", |(name, _)| *name));
-    let title = format!("{leader} is {best} on {most} of {} cases", cases.len());
+    let mut order: Vec<usize> = (0..names.len()).collect();
+    order.sort_by_key(|k| Reverse(near[*k]));
+    let first = order.iter().take(NAMED);
+    let first = first.map(|k| format!("{} on {}", plain(names[*k]), near[*k]));
+    let first: Vec<String> = first.collect();
+    let title = format!(
+        "Within twice the least time, of {} cases: {}",
+        cases.len(),
+        first.join(", ")
+    );
     let caption = format!(
-        "{what} as a multiple of the least on the case, all meshes, friction coefficients and increments \
+        "solve time as a multiple of the least on the case, from {NEAR} on, all meshes, friction coefficients and increments \
          together; ≈: solved laws of its own, –: declined, ×: did not solve all of them"
     );
     let columns = names.iter().map(|name| plain(name)).collect();
