@@ -135,16 +135,6 @@ impl Source<'_> {
         allowed: impl fmt::Display,
         message: impl fmt::Display,
     ) -> CaseError {
-        self.complain(span, &value, &allowed, &message)
-    }
-
-    fn complain(
-        &self,
-        span: &Span,
-        value: &dyn fmt::Display,
-        allowed: &dyn fmt::Display,
-        message: &dyn fmt::Display,
-    ) -> CaseError {
         let start = self.boundary(span.start);
         let end = self.boundary(span.end).max(start);
         let before = &self.text[..start];

@@ -1,7 +1,5 @@
 //! What the methods cost: time of every method on every case, relative to the fastest.
 
-use std::cmp::Reverse;
-
 use super::kind::Kind;
 use super::runs::distinct;
 use crate::report::number::significant;
@@ -24,8 +22,8 @@ const FULL: f64 = 1000.0;
 /// Multiple of the least time below which single runs are not told apart.
 const NEAR: f64 = 2.0;
 
-/// Methods that the title names.
-const NAMED: usize = 3;
+/// Most methods that the title names.
+const NAMED: usize = 6;
 
 /// The figure of all cases.
 ///
@@ -40,9 +38,12 @@ pub fn add(bundle: &mut Bundle, rows: &[ComparisonRow]) -> Result<(), ReportErro
     cases.sort_unstable();
     let mut names = distinct(rows.iter().map(|row| row.method.as_str()));
     names.sort_by_key(|name| (rank(name), *name));
-    let cost = |row: &ComparisonRow| match row.verdict.is_solved() {
-        true => row.solve_s,
-        false => f64::NAN,
+    let cost = |row: &ComparisonRow| {
+        if row.verdict.is_solved() {
+            row.solve_s
+        } else {
+            f64::NAN
+        }
     };
     let mut near = vec![0; names.len()];
     let mut table = Vec::new();
@@ -68,27 +69,29 @@ pub fn add(bundle: &mut Bundle, rows: &[ComparisonRow]) -> Result<(), ReportErro
                 Some(VerdictKind::Refused) => "–".into(),
                 Some(_) => "×".into(),
             };
-            let tint = match ratio <= NEAR {
-                true => 0.0,
-                false => ratio.ln() / FULL.ln(),
+            let tint = if ratio <= NEAR {
+                0.0
+            } else {
+                ratio.ln() / FULL.ln()
             };
             let below = String::new();
             cells.push(Cell { tint, text, below });
         }
         table.push((plain(case), cells));
     }
-    let mut order: Vec<usize> = (0..names.len()).collect();
-    order.sort_by_key(|k| Reverse(near[*k]));
-    let first = order.iter().take(NAMED);
-    let first = first.map(|k| format!("{} on {}", plain(names[*k]), near[*k]));
-    let first: Vec<String> = first.collect();
+    let most = near.iter().copied().max().unwrap_or(0);
+    let first = names.iter().zip(&near).filter(|(_, count)| **count == most);
+    let first: Vec<String> = first.map(|(name, _)| plain(name)).collect();
+    let first = match first.len() {
+        ..=NAMED => first.join(", "),
+        count => format!("{count} methods"),
+    };
     let title = format!(
-        "Within twice the least time, of {} cases: {}",
-        cases.len(),
-        first.join(", ")
+        "Within twice the least time on {most} of {} cases: {first}",
+        cases.len()
     );
     let caption = format!(
-        "solve time as a multiple of the least on the case, from {NEAR} on, all meshes, friction coefficients and increments \
+        "solve time as a multiple of the least on the case, from {NEAR} on (white: less), all meshes, friction coefficients and increments \
          together; ≈: solved laws of its own, –: declined, ×: did not solve all of them"
     );
     let columns = names.iter().map(|name| plain(name)).collect();
