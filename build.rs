@@ -40,10 +40,6 @@ fn main() {
         output("git", &arguments).map(|changes| (!changes.is_empty()).to_string())
     });
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    let mut features: Vec<String> = std::env::vars()
-        .filter_map(|(name, _)| name.strip_prefix("CARGO_FEATURE_").map(str::to_lowercase))
-        .collect();
-    features.sort();
 
     embed_cases();
 
@@ -53,7 +49,6 @@ fn main() {
     set("RUSTC", output(&rustc, &["--version"]));
     set("TARGET", std::env::var("TARGET").ok());
     set("PROFILE", std::env::var("PROFILE").ok());
-    set("FEATURES", Some(features.join(",")));
 }
 
 /// Digest of names and contents of the sources: tells builds of one commit with different changes apart.

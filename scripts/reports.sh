@@ -40,7 +40,7 @@ for part in $parts; do
         keep)
             # Written by hand: other programs on the same problems.
             find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
-            keep . table1 table2 converged refinement penalty comparison.csv \
+            keep . table1 table2 converged penalty convergence.csv comparison.csv \
                 expectations_by_case cost.svg \
                 'beam_model1.6x18x9.edge-pairs.*.mu-0.1.contact.svg' 'penny_crack.*.contact.svg' \
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
@@ -49,8 +49,8 @@ for part in $parts; do
             keep stress stress_faults stress_invariances stress_ladders success stress_scenes.csv success.svg
             cp -r results/stress/cases reports/stress/
             keep random success causes stopping why.csv success.svg
-            keep sensitivity safe_windows sensitivity.svg
-            keep study ranking scaling success cells.csv fastest.svg profile.time.svg 'scaling.*.svg' \
+            keep sensitivity options options.svg
+            keep study ranking scaling success runs.csv profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
             "$stickslip" show reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;

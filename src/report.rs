@@ -1,8 +1,8 @@
 //! Turns the rows and fields of a run into files: CSV, tables, figures, ParaView files, provenance.
 //!
 //! One output kind per module. Every module returns text or bytes; a [`Bundle`] collects them and writes them all or
-//! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::studies::rows::Results)
-//! give the same bytes. Columns, digits and file names are documented in `docs/schema.md`.
+//! none. Nothing here computes mechanics and nothing reads the clock: the same [`Results`](crate::studies::results::Results)
+//! give the same bytes. Columns, digits and file names are documented by `stickslip show schema`.
 
 pub mod convergence;
 mod error;
@@ -20,11 +20,32 @@ pub mod table;
 pub mod tables;
 pub mod vtu;
 
+use crate::case::Case;
 pub use crate::files::bundle::Bundle;
 pub use crate::files::claim::Claim;
 pub use crate::files::claim::{Plan, plan};
 pub use crate::run::provenance::Provenance;
 pub use error::ReportError;
+
+/// Adds what was read, by file name, below `input/`: a folder can be made again from itself.
+///
+/// # Errors
+/// Those of [`Bundle::add`].
+pub fn add_input(
+    bundle: &mut Bundle,
+    texts: impl IntoIterator<Item = (String, String)>,
+) -> Result<(), ReportError> {
+    for (name, text) in texts {
+        bundle.add(format!("input/{name}"), text)?;
+    }
+    Ok(())
+}
+
+/// The texts of some cases with the names of their files.
+pub fn texts(cases: &[Case]) -> impl Iterator<Item = (String, String)> {
+    let text = |case: &Case| (format!("{}.toml", case.name), case.source.clone());
+    cases.iter().map(text)
+}
 
 /// Adds `provenance.toml`.
 ///

@@ -63,13 +63,13 @@ def main():
     for problem in sorted(arguments.problems.glob("*.local.hdf5")):
         case = problem.name.removesuffix(".hdf5")
         own = [row for row in solved if row["case"] == case]
-        best = least(own, "solve_s")
-        default = least([row for row in own if row["method"] == DEFAULT], "solve_s")
+        best = least(own, "solve_least_s")
+        default = least([row for row in own if row["method"] == DEFAULT], "solve_least_s")
         row = {"problem": case.removesuffix(".local"), "method": "none"}
         if best:
-            row |= {"method": best["method"], "iterations": best["iterations"], "time_s": best["solve_s"]}
+            row |= {"method": best["method"], "iterations": best["iterations"], "time_s": best["solve_least_s"]}
         if default:
-            row |= {"default_iterations": default["iterations"], "default_time_s": default["solve_s"]}
+            row |= {"default_iterations": default["iterations"], "default_time_s": default["solve_least_s"]}
         for name, path in zip(names, arguments.peers):
             theirs = [other for other in rows(path) if other["file"] == case]
             fastest = least([other for other in theirs if other["status"] == "solved"], "time_s")

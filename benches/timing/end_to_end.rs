@@ -11,17 +11,11 @@ use stickslip::case;
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
-use stickslip::studies::rows::Results;
+use stickslip::studies::cases::{Settings, run_case};
+use stickslip::studies::results::Results;
 use stickslip_timing::{ALL_METHODS, EXACT, PROBLEMS, left_out};
 
-const SETTINGS: Settings = Settings {
-    tier: None,
-    jobs: 1,
-    fields: Fields::None,
-    starts: 1,
-    why: Why::Nothing,
-};
+const SETTINGS: Settings = Settings::PLAIN;
 
 /// What a user gets: the case as shipped.
 fn run(file: &str, text: &str, choices: &[Choice]) -> Results {

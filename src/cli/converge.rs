@@ -5,7 +5,7 @@ use super::error::CliError;
 use super::output::{say, show, warn};
 use super::progress::Bar;
 use crate::case::{ContactSpace, Tip};
-use crate::report::{Plan, Provenance};
+use crate::report::{Plan, Provenance, add_input, texts};
 use crate::run::choice::Choice;
 use crate::studies::convergence::{self, ConvergencePlan, orders};
 use crate::studies::tips::tip_named;
@@ -76,7 +76,8 @@ pub fn run(arguments: Arguments, whole: Plan) -> Result<bool, CliError> {
     let (errors, orders) = orders::rows(&samples);
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("method", plan.choice.label.clone());
-    let bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
+    let mut bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
+    add_input(&mut bundle, texts(&cases))?;
     claim.commit(&bundle)?;
     show(&orders, "");
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());

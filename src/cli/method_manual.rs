@@ -1,4 +1,4 @@
-//! Method pages: what `stickslip show METHOD` prints and `docs/methods.md` collects.
+//! Method pages: what `stickslip show METHOD` prints and `stickslip show methods` collects.
 //!
 //! The text is the documentation at the head of each method's file, the options are those the method declares: one
 //! source for the code, the command line and the manual.
@@ -50,11 +50,10 @@ fn needs(method: &Method) -> Needs {
     defaults.map_or_else(|_| Needs::default(), |own| (method.build)(&own).needs())
 }
 
-/// `docs/methods.md`.
+/// All pages.
 pub fn all() -> String {
     let mut text = String::from(
-        "# Methods\n\nOne section per method: equations, options, guarantees, failure modes, what it skips. \
-         Written by `stickslip show methods`.\n\nAll methods see the same condensed increment,\n\n```text\n\
+        "# Methods\n\nOne section per method: equations, options, guarantees, failure modes, what it skips.\n\nAll methods see the same condensed increment,\n\n```text\n\
          v = (g, d) = q + W P + Q β,   Qᵀ P = c\n```\n\nwith W the Delassus operator, q the jump without contact forces, and \
          Q the jumps of rigid motions where the body floats.\n\n| method | laws | what it does |\n| :--- | :--- | :--- |\n",
     );

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::files::visible::visible;
 use crate::report::standard;
 use crate::report::table::{Row, readable};
-use crate::studies::rows::Results;
+use crate::studies::results::Results;
 
 /// Whether some line could not be printed.
 pub static LOST: AtomicBool = AtomicBool::new(false);
@@ -29,14 +29,11 @@ pub fn show<R: Row>(rows: &[R], note: &str) {
 
 /// Prints what runs came to and where it lies; true if all is as expected.
 pub fn conclude(results: &Results, dir: &Path) -> bool {
-    show(
-        &standard::last_runs(&results.runs),
-        ": the last increment of each",
-    );
+    show(&standard::runs(results), "");
     if !results.expectations.is_empty() {
         show(&results.expectations, "");
     }
-    for remark in &results.remarks {
+    for remark in results.remarks() {
         say(format_args!("{remark}"));
     }
     let summary = standard::summary(results);

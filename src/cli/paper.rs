@@ -5,9 +5,9 @@ use super::error::CliError;
 use super::output::{say, warn};
 use super::progress::Bar;
 use crate::report::{Plan, page, paper as report};
-use crate::studies::cases::{Fields, Settings, Why};
+use crate::studies::cases::{Fields, Settings};
 use crate::studies::paper::{self, Extent};
-use crate::studies::rows::Results;
+use crate::studies::results::Results;
 
 /// Arguments of `stickslip paper`.
 #[derive(Debug, clap::Args)]
@@ -27,11 +27,9 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let Arguments { output, jobs, full } = arguments;
     let claim = output.claim("paper", plan)?;
     let settings = Settings {
-        tier: None,
         jobs: usize::from(jobs),
         fields: Fields::First,
-        starts: 1,
-        why: Why::Nothing,
+        ..Settings::PLAIN
     };
     let bar = Bar::new();
     let (table1, table2) = paper::first_tables(settings, &bar)?;
@@ -54,8 +52,8 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     ));
     if !full {
         say(format_args!(
-            "Left for --full: converged reactions of the plate on meshes up to 352x352, the cases elliptic_crack and \
-             penny_crack, variants of the methods, figures of the other cases"
+            "Left for --full: converged reactions of the plate on meshes up to 352x352, cases with several cracks, with \
+             kinks and branches and with cracks in solids, variants of the methods, figures of the other cases"
         ));
     }
     print_missed(&paper.results);

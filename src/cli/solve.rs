@@ -15,13 +15,14 @@ use crate::report::{Bundle, Plan, names, standard, table};
 use crate::run::verdict::{Accuracy, Verdict};
 use crate::studies::analysis::success::success;
 use crate::studies::axes::named;
-use crate::studies::cases::{Fields, Settings, Why};
+use crate::studies::cases::{Settings, Why};
 use crate::studies::exchange::problem_file::ProblemFile;
 use crate::studies::lab::unmeasured;
 use crate::studies::measure::{Bench, MeasureError, Repeats, RunError, here};
 use crate::studies::origin::Origin;
-use crate::studies::results::add;
-use crate::studies::rows::{Results, RunKey};
+use crate::studies::record::Record;
+use crate::studies::results::Results;
+use crate::studies::rows::RunKey;
 use crate::studies::several::mark_several;
 use crate::studies::sources::collection::entries;
 use crate::studies::sources::files::FileProblem;
@@ -42,7 +43,7 @@ pub struct Arguments {
     /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9)
     #[arg(long, default_value = "high")]
     tier: Tier,
-    /// Solutions per method and problem, fewer where they take more than 5 s; times are those of the fastest
+    /// Solutions per method and problem, fewer where they take more than 5 s; times are their medians
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     repeats: u16,
     /// Look for what solves a problem that a method gave up
@@ -71,7 +72,7 @@ pub fn run(args: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     let claim = args.output.claim(name, plan)?;
     let bar = Bar::new();
     let (mut results, mut solutions) = (Results::default(), Bundle::new());
-    let (mut refusals, mut records) = (Vec::new(), Vec::new());
+    let mut refusals = Vec::new();
     let mut bench = Bench::default();
     let looks = Looks {
         curves: true,
@@ -111,27 +112,25 @@ pub fn run(args: Arguments, mut plan: Plan) -> Result<bool, CliError> {
             }
             Err(error) => return Err(error.into()),
         };
-        records.extend(answers.iter().map(|own| own.record.clone()));
-        for answer in answers {
+        for answer in &answers {
             let stem = names::stem(&RunKey::of(&answer.record, 1));
             for (part, values) in ["r", "u"].into_iter().zip(answer.solution.iter().flatten()) {
                 // The fewest digits that give the number back, as programs from outside answer.
                 let lines: String = values.iter().map(|v| format!("{v:e}\n")).collect();
                 solutions.add(format!("solutions/{stem}.{part}.txt"), lines)?;
             }
-            add(&mut results, answer);
         }
+        results.answers.extend(answers);
     }
-    mark_several(&mut results);
+    mark_several(&mut results.answers);
     bar.finish();
     let settings = Settings {
         tier: Some(args.tier),
-        jobs: 1,
-        fields: Fields::None,
-        starts: 1,
         why: Why::Cause,
+        ..Settings::PLAIN
     };
     let mut bundle = standard::bundle(&results, &provenance_with(settings, &chosen))?;
+    let mut records: Vec<Record> = results.records().cloned().collect();
     table::add(&mut bundle, &success(&records), "")?;
     records.extend(refusals);
     let problems = of_files(&records);

@@ -7,12 +7,14 @@ use std::time::{Duration, Instant};
 
 use super::arguments::{Output, find_cases, positive};
 use super::error::CliError;
-use super::output::{say, warn};
+use super::output::{say, show, warn};
 use super::progress::Bar;
 use crate::case::parse::read_text;
-use crate::report::{Claim, Provenance, page, plan, sweep};
+use crate::report::tables::options::OptionRow;
+use crate::report::{Claim, Provenance, add_input, page, plan, sweep};
 use crate::run::choice::Choice;
 use crate::studies::analysis::mark_several;
+use crate::studies::analysis::options::sweeps;
 use crate::studies::lab::{Lab, Shard};
 use crate::studies::memory::is_short;
 use crate::studies::origin::{Limits, Origin};
@@ -179,7 +181,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
     if arguments.shard.is_some() || left > 0 || STOP.load(Ordering::SeqCst) {
         return Ok(left == 0);
     }
-    report(&claim, &sweep.title, total, found)
+    report(&claim, &sweep.title, &sweep.input, total, found)
 }
 
 /// Takes over the records of another folder that answer a task better than what is there.
@@ -219,6 +221,7 @@ pub fn watch_for_interruption() -> Result<(), CliError> {
 fn report(
     claim: &Claim,
     title: &str,
+    input: &[(String, String)],
     total: usize,
     mut records: Vec<Record>,
 ) -> Result<bool, CliError> {
@@ -228,10 +231,12 @@ fn report(
         warn(format_args!("{}: {}", record.found.verdict, record.id));
     }
     let mut bundle = sweep::bundle(&records, total, &provenance(title, &records))?;
+    add_input(&mut bundle, input.to_vec())?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
-    for sentence in sweep::sensitivity_sentences(&records) {
-        say(format_args!("{sentence}"));
+    let sweeps = sweeps(&records);
+    if !sweeps.is_empty() {
+        show(&OptionRow::of(&sweeps), "");
     }
     say(format_args!("Results: {}", claim.dir().display()));
     Ok(!records.iter().any(|r| wrong(&r)))

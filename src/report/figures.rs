@@ -6,10 +6,10 @@
 pub mod agreement;
 pub mod cost;
 pub mod error;
-pub mod fastest;
 pub mod fields;
 pub mod friction_loop;
 mod kind;
+pub mod options;
 pub mod performance;
 pub mod profile;
 mod quantity_name;
@@ -17,7 +17,6 @@ pub mod residual;
 mod runs;
 pub use runs::distinct;
 pub mod scaling;
-pub mod sensitivity;
 pub mod stages;
 pub mod success;
 pub mod time_to_accuracy;
@@ -27,14 +26,12 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 17] = [
+pub static CATALOGUE: [(Chapter, &Kind); 15] = [
     (Chapter::Methods, &cost::KIND),
-    (Chapter::Study, &fastest::KIND),
     (Chapter::Study, &success::KIND),
     (Chapter::Study, &scaling::CLASSES),
     (Chapter::Study, &scaling::TIME),
-    (Chapter::Study, &scaling::ITERATIONS),
-    (Chapter::Study, &sensitivity::KIND),
+    (Chapter::Study, &options::KIND),
     (Chapter::Study, &work_precision::KIND),
     (Chapter::Study, &time_to_accuracy::KIND),
     (Chapter::Study, &performance::KIND),

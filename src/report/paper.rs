@@ -1,7 +1,7 @@
 //! The main job: the two tables of the founding paper, our values beside the printed ones, and all that stands with them.
 
 use super::table::{self, readable};
-use super::tables::runs::ExpectSummary;
+use super::tables::details::ExpectSummary;
 use super::{Bundle, Provenance, ReportError, figures, standard};
 use crate::studies::paper::comparison::comparison;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
@@ -20,16 +20,16 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
         Extent::Quick => &paper.results.of_cases(&CASES),
     };
     standard::add_figures(&mut bundle, drawn)?;
-    standard::add_fields(&mut bundle, &drawn.fields, provenance)?;
+    standard::add_fields(&mut bundle, drawn, provenance)?;
     super::add_provenance(&mut bundle, provenance)?;
     table::add(&mut bundle, &paper.table1, "")?;
     table::add(&mut bundle, &paper.table2, "")?;
     table::add(&mut bundle, &paper.penalty, "")?;
-    table::add(&mut bundle, &paper.refinement, "")?;
+    table::add(&mut bundle, &paper.convergence, "")?;
     table::add(&mut bundle, &paper.converged, "")?;
-    let defaults = comparison(&paper.results.runs);
+    let defaults = comparison(paper.results.records());
     figures::cost::add(&mut bundle, &defaults)?;
-    let all = paper.results.runs.iter().chain(&paper.variants);
+    let all = paper.results.records().chain(&paper.variants);
     table::add(&mut bundle, &comparison(all), "")?;
     Ok(bundle)
 }
@@ -44,7 +44,6 @@ pub fn tables(table1: &[Table1Row], table2: &[Table2Row]) -> String {
 pub fn text(paper: &Paper) -> String {
     let tables = [
         readable(&paper.penalty, ""),
-        readable(&paper.refinement, ""),
         readable(&paper.converged, ""),
         readable(&ExpectSummary::of(&paper.results.expectations), ""),
     ];

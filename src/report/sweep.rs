@@ -1,7 +1,7 @@
 //! Records of a sweep as tables and figures.
 //!
-//! Files that hold no times are the same on every machine: `cells.csv`, `increments.csv`, `deviations.csv`,
-//! `success.*`, `sensitivity.*`, `safe_windows.*`. All others belong to the machine. Times stand beside honest verdicts only, see
+//! Files that hold no times are the same on every machine: `increments.csv`, `deviations.csv`,
+//! `success.*`, `options.*`. All others belong to the machine. Times stand beside honest verdicts only, see
 //! [`published_times`](crate::studies::analysis::published_times).
 
 use std::collections::BTreeSet;
@@ -9,9 +9,8 @@ use std::collections::BTreeSet;
 use super::names::file_name;
 use super::tables::of_study;
 use super::tables::ranks::sets;
-use super::tables::sensitivity::WindowRow;
 use super::{Bundle, Provenance, ReportError, figures};
-use crate::studies::analysis::sensitivity::sweeps;
+use crate::studies::analysis::options::sweeps;
 use crate::studies::analysis::success::success;
 use crate::studies::record::Record;
 
@@ -34,10 +33,7 @@ pub fn bundle(
     }
     let (sets, sweeps) = (sets(records), sweeps(records));
     figures::success::add(&mut bundle, &success(records), &caveat)?;
-    if !sweeps.is_empty() {
-        figures::sensitivity::add(&mut bundle, &sweeps, &caveat)?;
-    }
-    figures::fastest::add(&mut bundle, &sets, &caveat)?;
+    figures::options::add(&mut bundle, &sweeps, &caveat)?;
     figures::scaling::add(&mut bundle, records, &caveat)?;
     figures::performance::add(&mut bundle, "", &sets, &caveat)?;
     figures::work_precision::add(&mut bundle, records, &caveat)?;
@@ -46,13 +42,6 @@ pub fn bundle(
     add_classes(&mut bundle, records, &caveat)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
-}
-
-/// What a paper would print of the options that were swept, a sentence each.
-pub fn sensitivity_sentences(records: &[Record]) -> Vec<String> {
-    let sweeps = sweeps(records);
-    let rows = WindowRow::of(&sweeps);
-    rows.iter().map(WindowRow::sentence).collect()
 }
 
 /// Adds a performance profile per class, where problems come from files.

@@ -1,4 +1,4 @@
-//! One table, five forms: CSV, Markdown, LaTeX, terminal, page; and its chapter of `docs/schema.md`.
+//! One table, five forms: CSV, Markdown, LaTeX, terminal, page; and its chapter of `stickslip show schema`.
 //!
 //! A row type says once what its columns are ([`Row::columns`]: name, unit, meaning, contents, digits) and which question
 //! the table answers; everything else follows from that.
@@ -37,7 +37,7 @@ pub trait Row: Sized {
     const TITLE: &'static str;
     /// The reader's question that it answers.
     const QUESTION: &'static str;
-    /// What else its chapter in `docs/schema.md` says; may be empty.
+    /// What else its chapter in `stickslip show schema` says; may be empty.
     const NOTES: &'static str = "";
     /// Whether it is written as Markdown and LaTeX too, for reading.
     const READABLE: bool = true;

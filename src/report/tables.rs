@@ -2,39 +2,39 @@
 
 pub mod causes;
 pub mod convergence;
+pub mod details;
+pub mod options;
 pub mod paper;
 pub mod peers;
 pub mod problems;
 pub mod ranks;
 pub mod runs;
-pub mod sensitivity;
 pub mod stress;
-pub mod sweep;
 mod words;
 
 use causes::WhyRow;
+use options::OptionRow;
 use problems::ProblemRow;
 use ranks::{AccuracyRow, PointRow, RankingRow};
-use sensitivity::{SensitivityRow, WindowRow};
-use sweep::{CellRow, DeviationRow, IncrementRow, TimeRow};
+use runs::{DeviationRow, RunRow};
 
 use super::table::{self, Description, Row};
 use super::{Bundle, ReportError};
 use crate::studies::analysis::accuracy::refinements;
 use crate::studies::analysis::causes::{CauseRow, StoppingRow, causes, stopping};
+use crate::studies::analysis::options::sweeps;
 use crate::studies::analysis::scaling::{Growth, growth};
-use crate::studies::analysis::sensitivity::sweeps;
 use crate::studies::analysis::success::{SuccessRow, success};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
 use crate::studies::paper::comparison::ComparisonRow;
-use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use crate::studies::paper::converged_reactions::ConvergedRow;
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::record::Record;
-use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, QuantityRow, RunRow};
+use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, IncrementRow, QuantityRow};
 use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, SceneRow};
 
-/// What a table or figure is about: a section of the page, a chapter of `docs/schema.md`.
+/// What a table or figure is about: a section of the page, a chapter of `stickslip show schema`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Chapter {
     /// The founding paper.
@@ -134,6 +134,8 @@ impl Chapter {
 
 /// A table that a study makes of its records.
 pub struct OfStudy {
+    /// Where it stands.
+    pub chapter: Chapter,
     /// What it is.
     pub about: Description,
     /// Adds it.
@@ -151,45 +153,49 @@ fn add<R: Row>(bundle: &mut Bundle, rows: &[R], caveat: &str) -> Result<(), Repo
 /// Adds what is made of records, with a caveat for the heading.
 type Add = fn(&mut Bundle, &[Record], &str) -> Result<(), ReportError>;
 
-fn table<R: Row>(add: Add) -> OfStudy {
+fn table<R: Row>(chapter: Chapter, add: Add) -> OfStudy {
     let about = Description::of::<R>();
-    OfStudy { about, add }
+    OfStudy {
+        chapter,
+        about,
+        add,
+    }
 }
 
 /// The tables of a study, in the order of the page: a new one is its file and a line here.
 pub fn of_study() -> Vec<OfStudy> {
+    use Chapter::{Runs, Study};
     vec![
-        table::<RankingRow>(|to, of, caveat| add(to, &ranks::rankings(of), caveat)),
-        table::<Growth>(|to, of, caveat| add(to, &growth(of), caveat)),
-        table::<SuccessRow>(|to, of, caveat| add(to, &success(of), caveat)),
-        table::<CauseRow>(|to, of, caveat| add(to, &causes(of), caveat)),
-        table::<WhyRow>(|to, of, caveat| add(to, &WhyRow::all(of), caveat)),
-        table::<StoppingRow>(|to, of, caveat| add(to, &stopping(of), caveat)),
-        table::<WindowRow>(|to, of, caveat| add(to, &WindowRow::of(&sweeps(of)), caveat)),
-        table::<SensitivityRow>(|to, of, caveat| {
-            let sweeps = sweeps(of);
-            let rows: Vec<SensitivityRow> = sweeps.iter().flat_map(SensitivityRow::of).collect();
-            add(to, &rows, caveat)
+        table::<RankingRow>(Study, |to, of, caveat| {
+            add(to, &ranks::rankings(of), caveat)
         }),
-        table::<PointRow>(|to, of, _| add(to, &ranks::curves(of), "")),
-        table::<AccuracyRow>(|to, of, _| {
+        table::<Growth>(Study, |to, of, caveat| add(to, &growth(of), caveat)),
+        table::<SuccessRow>(Study, |to, of, caveat| add(to, &success(of), caveat)),
+        table::<CauseRow>(Study, |to, of, caveat| add(to, &causes(of), caveat)),
+        table::<WhyRow>(Study, |to, of, caveat| add(to, &WhyRow::all(of), caveat)),
+        table::<StoppingRow>(Study, |to, of, caveat| add(to, &stopping(of), caveat)),
+        table::<OptionRow>(Study, |to, of, caveat| {
+            add(to, &OptionRow::of(&sweeps(of)), caveat)
+        }),
+        table::<PointRow>(Study, |to, of, _| add(to, &ranks::curves(of), "")),
+        table::<AccuracyRow>(Study, |to, of, _| {
             let meshes = refinements(of);
             let errors = meshes
                 .iter()
                 .flat_map(|one| one.errors.iter().map(AccuracyRow));
             add(to, &errors.collect::<Vec<_>>(), "")
         }),
-        table::<CellRow>(|to, of, _| add(to, &of.iter().map(CellRow).collect::<Vec<_>>(), "")),
-        table::<IncrementRow>(|to, of, _| {
+        table::<RunRow>(Runs, |to, of, _| {
+            add(to, &of.iter().map(RunRow).collect::<Vec<_>>(), "")
+        }),
+        table::<IncrementRow>(Runs, |to, of, _| {
             let rows = of.iter().flat_map(IncrementRow::of);
             add(to, &rows.collect::<Vec<_>>(), "")
         }),
-        table::<DeviationRow>(|to, of, _| add(to, &DeviationRow::all(of), "")),
-        table::<TimeRow>(|to, of, _| {
-            let rows = of.iter().filter_map(TimeRow::of);
-            add(to, &rows.collect::<Vec<_>>(), "")
+        table::<DeviationRow>(Runs, |to, of, _| add(to, &DeviationRow::all(of), "")),
+        table::<ProblemRow>(Study, |to, of, caveat| {
+            add(to, &problems::of_files(of), caveat)
         }),
-        table::<ProblemRow>(|to, of, caveat| add(to, &problems::of_files(of), caveat)),
     ]
 }
 
@@ -202,11 +208,16 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<Table1Row>(),
         Description::of::<Table2Row>(),
         Description::of::<ConvergedRow>(),
-        Description::of::<SequenceRow>(),
         Description::of::<PenaltyRow>(),
     ];
     let methods = vec![Description::of::<ComparisonRow>()];
-    let study = of_study().into_iter().map(|table| table.about).collect();
+    let of_chapter = |chapter| {
+        let own = of_study()
+            .into_iter()
+            .filter(move |own| own.chapter == chapter);
+        own.map(|table| table.about)
+    };
+    let study = of_chapter(Chapter::Study).collect();
     let stress = vec![
         Description::of::<FaultRow>(),
         Description::of::<InvarianceRow>(),
@@ -216,16 +227,16 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
     let benchmarks = vec![peers::peers()];
     let expected = vec![
-        Description::of::<runs::ExpectSummary>(),
+        Description::of::<details::ExpectSummary>(),
         Description::of::<ExpectRow>(),
     ];
-    let runs = vec![
-        Description::of::<RunRow>(),
+    let details = [
         Description::of::<QuantityRow>(),
         Description::of::<HistoryRow>(),
         Description::of::<rows::PointRow>(),
         Description::of::<ExactRow>(),
     ];
+    let runs = of_chapter(Chapter::Runs).chain(details).collect();
     of(Chapter::Paper, paper)
         .chain(of(Chapter::Methods, methods))
         .chain(of(Chapter::Study, study))

@@ -115,7 +115,7 @@ pub fn add_fields(
     bundle: &mut Bundle,
     folder: &str,
     stem: &str,
-    fields: &RunFields,
+    fields: &RunFields<'_>,
     comment: &str,
 ) -> Result<(), ReportError> {
     let mut collection = Vec::new();

@@ -5,9 +5,13 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+use crate::files::visible::visible;
+
 /// Origin of a set of reports.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Provenance {
+    /// Command line.
+    pub command: String,
     /// Version of this crate.
     pub version: String,
     /// Git commit of the sources, or `unknown`.
@@ -20,8 +24,6 @@ pub struct Provenance {
     pub target: String,
     /// Build profile: `debug` or `release`.
     pub profile: String,
-    /// Cargo features.
-    pub features: Vec<String>,
     /// Operating system.
     pub os: String,
     /// Processor model, or `unknown`.
@@ -36,17 +38,13 @@ impl Provenance {
     /// What is known about this build and this machine; `threads` as the run used them.
     pub fn collect(threads: usize) -> Self {
         Self {
+            command: command(),
             version: env!("CARGO_PKG_VERSION").into(),
             commit: env!("STICKSLIP_BUILD_COMMIT").into(),
             dirty: env!("STICKSLIP_BUILD_DIRTY").into(),
             rustc: env!("STICKSLIP_BUILD_RUSTC").into(),
             target: env!("STICKSLIP_BUILD_TARGET").into(),
             profile: env!("STICKSLIP_BUILD_PROFILE").into(),
-            features: env!("STICKSLIP_BUILD_FEATURES")
-                .split(',')
-                .filter(|feature| !feature.is_empty())
-                .map(str::to_owned)
-                .collect(),
             os: std::env::consts::OS.into(),
             cpu: cpu_model(),
             threads,
@@ -68,6 +66,24 @@ impl Provenance {
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
     }
+}
+
+/// The command line, as a shell would take it.
+fn command() -> String {
+    let quoted = |word: &str| {
+        let plain = |c: char| c.is_alphanumeric() || "-_=:,./+%@".contains(c);
+        match !word.is_empty() && word.chars().all(plain) {
+            true => word.to_owned(),
+            false => format!("'{}'", word.replace('\'', "'\\''")),
+        }
+    };
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| quoted(&visible(&word.to_string_lossy())));
+    let name = env!("CARGO_PKG_NAME").to_owned();
+    std::iter::once(name)
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// Processor model as Linux tells it; elsewhere only the architecture is known without extra libraries.

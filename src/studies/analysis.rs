@@ -7,10 +7,10 @@
 pub mod accuracy;
 pub mod causes;
 pub mod costs;
+pub mod options;
 pub mod profile;
 pub mod ranking;
 pub mod scaling;
-pub mod sensitivity;
 pub mod series;
 pub mod success;
 #[cfg(test)]

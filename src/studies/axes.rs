@@ -39,6 +39,14 @@ pub struct Axes {
 }
 
 impl Subject {
+    /// Text of the case with the name of its file; none of a problem file.
+    pub fn text(&self) -> Option<(String, String)> {
+        match &*self.matter {
+            Matter::Case { text, .. } => Some((format!("{}.toml", self.name), text.clone())),
+            _ => None,
+        }
+    }
+
     /// A case.
     pub fn of(case: &Case) -> Self {
         Self {

@@ -9,9 +9,8 @@ use crate::run::verdict::Accuracy;
 use crate::studies::axes::{Axes, Subject, named};
 use crate::studies::exact_curve::exact_rows;
 use crate::studies::expect::{self, expectation_rows};
-use crate::studies::measure::{Answer, Bench, RunError, here};
-use crate::studies::results::add;
-use crate::studies::rows::{Results, RunRow};
+use crate::studies::measure::{Bench, RunError, here};
+use crate::studies::results::Results;
 use crate::studies::several::mark_several;
 use crate::studies::task::Looks;
 
@@ -28,6 +27,17 @@ pub struct Settings {
     pub starts: usize,
     /// What is asked of a run that gave up.
     pub why: Why,
+}
+
+impl Settings {
+    /// Cases as they are, one run after the other, numbers alone.
+    pub const PLAIN: Self = Self {
+        tier: None,
+        jobs: 1,
+        fields: Fields::None,
+        starts: 1,
+        why: Why::Nothing,
+    };
 }
 
 /// What is asked of a run that gave up.
@@ -102,26 +112,16 @@ pub fn run_case(
             }
         },
     )?;
-    for (answer, choice) in answers.into_iter().zip(choices.iter().cycle()) {
-        results.append(with_expectations(case, choice, answer));
+    for (answer, choice) in answers.iter().zip(choices.iter().cycle()) {
+        results
+            .expectations
+            .extend(expectation_rows(case, choice, &answer.record));
     }
-    mark_several(&mut results);
+    results.answers = answers;
+    mark_several(&mut results.answers);
     if settings.jobs > 1 {
-        results.runs.iter_mut().for_each(RunRow::forget_times);
+        let spent = results.answers.iter_mut().map(|own| &mut own.record.spent);
+        spent.for_each(|own| *own = None);
     }
     Ok(results)
-}
-
-/// The rows of a run.
-fn with_expectations(case: &Case, choice: &Choice, answer: Answer) -> Results {
-    let refine = answer.record.asked.refine;
-    let mut own = Results::default();
-    let started = answer.record.spent.is_some();
-    add(&mut own, answer);
-    // A run that could not start is held to nothing.
-    if let (true, Some(last)) = (started, own.runs.last()) {
-        let key = last.key.clone();
-        own.expectations = expectation_rows(case, choice, refine, &key, &own);
-    }
-    own
 }

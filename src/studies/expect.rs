@@ -4,7 +4,8 @@ use crate::case::{Case, CaseError, Expect, Tolerance};
 use crate::model::boundary::region_name;
 use crate::model::quantities::{AXES, LOCAL, unit};
 use crate::run::choice::Choice;
-use crate::studies::rows::{ExpectRow, MET, MISSED_AS_DOCUMENTED, QuantityRow, Results, RunKey};
+use crate::studies::record::Record;
+use crate::studies::rows::{ExpectRow, MET, MISSED_AS_DOCUMENTED, RunKey};
 
 /// Refuses expectations that no run can answer: an unknown quantity, or a place, component or unit it does not have.
 ///
@@ -17,7 +18,7 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
     for expect in &case.expects {
         let name = expect.quantity.as_str();
         let Some(unit) = unit(name, dim) else {
-            let allowed = "a quantity of quantities.csv, see docs/schema.md";
+            let allowed = "a quantity of quantities.csv, see `stickslip show schema`";
             return Err(case.error(&expect.span, name, allowed, "unknown quantity"));
         };
         let (places, components): (Vec<String>, &[&str]) = match name {
@@ -64,26 +65,21 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Rows of `expectations.csv` for one run, last increment `key`.
-pub fn expectation_rows(
-    case: &Case,
-    choice: &Choice,
-    refine: usize,
-    key: &RunKey,
-    results: &Results,
-) -> Vec<ExpectRow> {
-    case.expects
+/// Rows of `expectations.csv` for one run; one that could not start is held to nothing.
+pub fn expectation_rows<'a>(
+    case: &'a Case,
+    choice: &'a Choice,
+    record: &'a Record,
+) -> impl Iterator<Item = ExpectRow> + 'a {
+    let (refine, friction) = (record.asked.refine, record.asked.mu());
+    let applicable = case
+        .expects
         .iter()
-        .filter(|e| applies(e, choice, refine, key.friction))
-        .map(|e| {
-            let increment = e.increment.unwrap_or(case.path.increments);
-            let key = RunKey {
-                increment,
-                ..key.clone()
-            };
-            compare(e, key, &results.quantities)
-        })
-        .collect()
+        .filter(move |e| record.spent.is_some() && applies(e, choice, refine, friction));
+    applicable.map(|e| {
+        let increment = e.increment.unwrap_or(case.path.increments);
+        compare(e, RunKey::of(record, increment), record)
+    })
 }
 
 /// An expectation without a method speaks of the exact ones.
@@ -97,17 +93,18 @@ fn applies(expect: &Expect, choice: &Choice, refine: usize, friction: f64) -> bo
         && expect.refine.is_none_or(|factor| factor == refine)
 }
 
-fn compare(expect: &Expect, key: RunKey, rows: &[QuantityRow]) -> ExpectRow {
-    let found = rows
-        .iter()
-        .find(|row| {
-            row.key.increment == key.increment
-                && row.quantity.name == expect.quantity
-                && row.quantity.at == expect.at
-                && row.quantity.component == expect.component
-                && row.quantity.unit == expect.unit
+fn compare(expect: &Expect, key: RunKey, record: &Record) -> ExpectRow {
+    let steps = record.found.increments.iter();
+    let own = steps.filter(|step| step.increment == key.increment);
+    let found = own
+        .flat_map(|step| &step.quantities)
+        .find(|q| {
+            q.name == expect.quantity
+                && q.at == expect.at
+                && q.component == expect.component
+                && q.unit == expect.unit
         })
-        .map_or(f64::NAN, |row| row.quantity.value);
+        .map_or(f64::NAN, |q| q.value);
     let allowed = match expect.tolerance {
         Tolerance::Relative(t) => t * expect.value.abs(),
         Tolerance::Absolute(t) => t,

@@ -15,16 +15,25 @@ pub use lookup::{PaperError, as_printed};
 use crate::case::shipped;
 use crate::run::progress::Progress;
 use crate::studies::cases::{Fields, Settings, run_case};
-use crate::studies::rows::{Results, RunRow};
+use crate::studies::convergence::orders::ErrorRow;
+use crate::studies::record::Record;
+use crate::studies::results::Results;
 
-use converged_reactions::{ConvergedRow, SequenceRow, converged_reactions};
+use converged_reactions::{ConvergedRow, converged_reactions};
 use lookup::{case, choice};
 use penalty::{PenaltyRow, penalty_rows};
 use printed_tables::{PAPER_METHODS, Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
 use variants::variant_runs;
 
 /// Cases that take longer than all others together.
-const LONG: [&str; 2] = ["elliptic_crack", "penny_crack"];
+const LONG: [&str; 6] = [
+    "branched_crack",
+    "crossing_cracks",
+    "elliptic_crack",
+    "kinked_crack",
+    "parallel_cracks",
+    "penny_crack",
+];
 
 /// Cases of the paper's two tables.
 pub const CASES: [&str; 5] = [
@@ -47,13 +56,13 @@ pub struct Paper {
     /// Error of the penalty method against its parameter.
     pub penalty: Vec<PenaltyRow>,
     /// Reactions of the plate under refinement: by edge pairs, and by star multipliers if they were asked for.
-    pub refinement: Vec<SequenceRow>,
+    pub convergence: Vec<ErrorRow>,
     /// The finest ones beside the printed numbers.
     pub converged: Vec<ConvergedRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
     /// Plate and beam by variants of the methods, if they were asked for.
-    pub variants: Vec<RunRow>,
+    pub variants: Vec<Record>,
     /// How much was run.
     pub extent: Extent,
 }
@@ -119,7 +128,7 @@ pub fn run(
     paper.beam_models_mm = beam_difference(&paper.results);
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
     let full = extent == Extent::Full;
-    (paper.refinement, paper.converged) = converged_reactions(full, &paper.table1, progress)?;
+    (paper.convergence, paper.converged) = converged_reactions(full, &paper.table1, progress)?;
     if full {
         paper.variants = variant_runs(numbers_only, progress)?;
     }

@@ -45,6 +45,8 @@ pub struct Plan {
     pub title: String,
     /// How often tasks are repeated for their times.
     pub repeats: Repeats,
+    /// What it was read from: texts by file name.
+    pub input: Vec<(String, String)>,
     /// The tasks.
     pub tasks: Vec<Task>,
 }
@@ -76,7 +78,9 @@ impl Plan {
             for value in blocks {
                 tasks.extend(block(value, folder, &mut room)?);
             }
-            Ok(Self::of(title, repeats, tasks))
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let input = vec![(name.into_owned(), text.to_owned())];
+            Ok(Self::of(title, repeats, input, tasks))
         })
     }
 
@@ -92,17 +96,19 @@ impl Plan {
         let methods = named(choices);
         let of = |own: &Problem| own.subject.tasks(&own.axes, &methods, &accuracies, looks);
         let tasks = problems.iter().flat_map(of).collect();
-        Self::of(title, Repeats::DEFAULT, tasks)
+        let input = problems.iter().filter_map(|own| own.subject.text());
+        Self::of(title, Repeats::DEFAULT, input.collect(), tasks)
     }
 
     /// Blocks may overlap.
-    fn of(title: String, repeats: Repeats, tasks: Vec<Task>) -> Self {
+    fn of(title: String, repeats: Repeats, input: Vec<(String, String)>, tasks: Vec<Task>) -> Self {
         let mut named: Vec<(String, Task)> = tasks.into_iter().map(|own| (own.id(), own)).collect();
         named.sort_by(|a, b| a.0.cmp(&b.0));
         named.dedup_by(|a, b| a.0 == b.0);
         Self {
             title,
             repeats,
+            input,
             tasks: named.into_iter().map(|own| own.1).collect(),
         }
     }

@@ -1,124 +1,139 @@
-//! Records as rows of the tables of a run.
+//! Everything a command found, before it is written.
 
 use crate::studies::measure::Answer;
-use crate::studies::record::{Record, Step};
+use crate::studies::record::Record;
 use crate::studies::rows::{
-    HistoryRow, PointRow, QuantityRow, Results, RunFields, RunKey, RunRow, recorded_iterations,
+    ExactRow, ExpectRow, HistoryRow, IncrementRow, PointRow, QuantityRow, RunFields, RunKey,
+    recorded_iterations,
 };
 
-impl RunKey {
-    /// Names an increment of a record.
-    pub fn of(record: &Record, increment: usize) -> Self {
-        let size = record.found.problem.as_ref();
-        RunKey {
-            case: record.asked.case.clone(),
-            mesh: size.map_or_else(String::new, |size| size.mesh.clone()),
-            space: size.map_or_else(String::new, |size| size.space.clone()),
-            method: record.found.method.clone(),
-            friction: record.asked.mu(),
-            increment,
+/// What runs found, and what they are held to.
+#[derive(Debug, Clone, Default)]
+pub struct Results {
+    /// The runs.
+    pub answers: Vec<Answer>,
+    /// Closed forms of their cases.
+    pub exact: Vec<ExactRow>,
+    /// Expected numbers.
+    pub expectations: Vec<ExpectRow>,
+}
+
+impl Results {
+    /// Adds the results of other runs.
+    pub fn append(&mut self, other: Results) {
+        self.answers.extend(other.answers);
+        self.exact.extend(other.exact);
+        self.expectations.extend(other.expectations);
+    }
+
+    /// The part of these results that is about some cases.
+    pub fn of_cases(&self, names: &[&str]) -> Self {
+        fn part<R: Clone>(rows: &[R], wanted: impl Fn(&R) -> bool) -> Vec<R> {
+            rows.iter().filter(|row| wanted(row)).cloned().collect()
+        }
+        let wanted = |name: &str| names.contains(&name);
+        Self {
+            answers: part(&self.answers, |own| wanted(&own.record.asked.case)),
+            exact: part(&self.exact, |row| wanted(&row.case)),
+            expectations: part(&self.expectations, |row| wanted(&row.key.case)),
         }
     }
-}
 
-/// Adds the rows of a task.
-pub fn add(results: &mut Results, answer: Answer) {
-    let Answer {
-        record,
-        histories,
-        points,
-        fields,
-        jumps,
-        ..
-    } = answer;
-    let steps = &record.found.increments;
-    let key = |step: &Step| RunKey::of(&record, step.increment);
-    results.runs.extend(rows(&record));
-    for (step, history) in steps.iter().zip(histories) {
-        let Some(last) = history.len().checked_sub(1) else {
-            continue;
-        };
-        let row = |iteration: usize| HistoryRow {
-            key: key(step),
-            iteration,
-            violation: history[iteration],
-        };
-        results
-            .history
-            .extend(recorded_iterations(last).into_iter().map(row));
+    /// The records of the runs.
+    pub fn records(&self) -> impl Iterator<Item = &Record> {
+        self.answers.iter().map(|own| &own.record)
     }
-    for step in steps {
-        let row = |quantity| QuantityRow {
-            key: key(step),
-            quantity,
-        };
-        let own = step.quantities.iter().cloned();
-        results.quantities.extend(own.map(row));
-    }
-    for (step, points) in steps.iter().zip(points) {
-        let row = |point| PointRow {
-            key: key(step),
-            point,
-        };
-        results.points.extend(points.into_iter().map(row));
-    }
-    for jump in jumps {
-        let problem = RunKey::of(&record, jump.increment).problem();
-        results.answers.push((problem, jump));
-    }
-    if let (Some(why), Some(last)) = (&record.found.why, steps.last()) {
-        let RunKey {
-            case,
-            mesh,
-            method,
-            friction,
-            increment,
-            ..
-        } = key(last);
-        let remark = format!("{case} {mesh} mu={friction} {method} increment {increment}");
-        results
-            .remarks
-            .push(format!("{remark}: {}: {why}", record.found.verdict));
-    }
-    if let (Some(last), false) = (steps.last(), fields.is_empty()) {
-        results.fields.push(RunFields {
-            key: key(last),
-            steps: fields,
-        });
-    }
-}
 
-/// Rows of `runs.csv`. Times stand beside an honest verdict only.
-pub fn rows(record: &Record) -> Vec<RunRow> {
-    let steps = record.found.increments.iter();
-    steps
-        .enumerate()
-        .map(|(k, step)| row(record, k, step))
+    /// What every increment found.
+    pub fn increments(&self) -> Vec<IncrementRow<'_>> {
+        self.records().flat_map(IncrementRow::of).collect()
+    }
+
+    /// Quantities of interest at the end of every increment.
+    pub fn quantities(&self) -> Vec<QuantityRow<'_>> {
+        let rows = self.records().flat_map(IncrementRow::of);
+        rows.flat_map(|IncrementRow { key, step, .. }| {
+            let own = step.quantities.iter();
+            own.map(move |quantity| QuantityRow {
+                key: key.clone(),
+                quantity,
+            })
+        })
         .collect()
-}
-
-fn row(record: &Record, k: usize, step: &Step) -> RunRow {
-    let spent = record.spent.as_ref();
-    let time = |own: Option<f64>| own.unwrap_or(f64::NAN);
-    let own = spent.and_then(|spent| spent.steps.get(k));
-    let prepare_s = spent.map(|spent| spent.prepare.median_s);
-    let mut row = RunRow {
-        key: RunKey::of(record, step.increment),
-        tier: record.asked.accuracy().to_string(),
-        step: step.clone(),
-        size: record.found.problem.clone().unwrap_or_default(),
-        factorisations: spent.map_or(0, |spent| spent.factorisations),
-        setup_s: time(spent.map(|spent| spent.setup_s)),
-        assembly_s: time(spent.map(|spent| spent.assembly_s)),
-        factorisation_s: time(spent.map(|spent| spent.factorisation_s)),
-        condensation_s: time(spent.map(|spent| spent.condensation_s)),
-        prepare_s: time(prepare_s.map(|all| if k == 0 { all } else { 0.0 })),
-        solve_s: time(own.map(|own| own.total_s)),
-        enforcement_s: time(own.map(|own| own.enforcement_s)),
-        reported_s: time(own.and_then(|own| own.reported_s)),
-    };
-    if !step.verdict.is_honest() {
-        row.forget_times();
     }
-    row
+
+    /// Recorded iterations of every increment.
+    pub fn history(&self) -> Vec<HistoryRow> {
+        let all = self.answers.iter().flat_map(|own| {
+            let named = IncrementRow::of(&own.record).map(|row| row.key);
+            named.zip(&own.histories)
+        });
+        all.flat_map(|(key, history)| {
+            let last = history.len().checked_sub(1);
+            let recorded = last.map_or_else(Vec::new, recorded_iterations);
+            recorded.into_iter().map(move |iteration| HistoryRow {
+                key: key.clone(),
+                iteration,
+                violation: history[iteration],
+            })
+        })
+        .collect()
+    }
+
+    /// Contact points at the end of every increment.
+    pub fn points(&self) -> Vec<PointRow<'_>> {
+        let all = self.answers.iter().flat_map(|own| {
+            let named = IncrementRow::of(&own.record).map(|row| row.key);
+            named.zip(&own.points)
+        });
+        all.flat_map(|(key, points)| {
+            points.iter().map(move |point| PointRow {
+                key: key.clone(),
+                point,
+            })
+        })
+        .collect()
+    }
+
+    /// Fields of the runs whose fields were kept.
+    pub fn fields(&self) -> impl Iterator<Item = RunFields<'_>> {
+        self.answers.iter().filter_map(|own| {
+            let last = own.record.found.increments.last()?;
+            (!own.fields.is_empty()).then(|| RunFields {
+                key: RunKey::of(&own.record, last.increment),
+                steps: &own.fields,
+            })
+        })
+    }
+
+    /// Why runs gave up and what to change, a line each.
+    pub fn remarks(&self) -> impl Iterator<Item = String> {
+        self.records().filter_map(|record| {
+            let found = &record.found;
+            let (why, last) = (found.why.as_ref()?, found.increments.last()?);
+            let RunKey {
+                case,
+                mesh,
+                method,
+                friction,
+                increment,
+                ..
+            } = RunKey::of(record, last.increment);
+            let verdict = &found.verdict;
+            Some(format!(
+                "{case} {mesh} mu={friction} {method} increment {increment}: {verdict}: {why}"
+            ))
+        })
+    }
+
+    /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
+    pub fn failures(&self) -> usize {
+        let failed = self.records().filter(|r| r.found.verdict.is_failure());
+        failed.count()
+    }
+
+    /// True if no run failed and every expected number came out as stated: the exit code of what made these results.
+    pub fn as_expected(&self) -> bool {
+        self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
+    }
 }

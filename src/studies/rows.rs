@@ -1,6 +1,4 @@
-//! What a run leaves behind: the rows of the tables and the fields of the pictures.
-//!
-//! Runs fill these types, the report writes them, each as one CSV file (`docs/schema.md`).
+//! Rows of tables: views of what runs found, each with the name of its run.
 
 use std::cmp::Ordering;
 
@@ -8,7 +6,7 @@ use serde::Serialize;
 
 use crate::model::field_mesh::FieldStep;
 use crate::model::quantities::{PointState, Quantity};
-use crate::studies::record::{ProblemSize, Step};
+use crate::studies::record::{Record, Step};
 
 /// What identifies a run; first columns of every table.
 #[derive(Debug, Clone, PartialEq, PartialOrd, Serialize)]
@@ -28,6 +26,19 @@ pub struct RunKey {
 }
 
 impl RunKey {
+    /// Names an increment of a run.
+    pub fn of(record: &Record, increment: usize) -> Self {
+        let size = record.found.problem.as_ref();
+        RunKey {
+            case: record.asked.case.clone(),
+            mesh: size.map_or_else(String::new, |size| size.mesh.clone()),
+            space: size.map_or_else(String::new, |size| size.space.clone()),
+            method: record.found.method.clone(),
+            friction: record.asked.mu(),
+            increment,
+        }
+    }
+
     /// What all methods solve: everything but the method.
     pub fn problem(&self) -> String {
         let RunKey {
@@ -61,62 +72,36 @@ pub struct Jump {
     pub reference_jump: f64,
 }
 
-/// One row of `runs.csv`: one increment of one run.
+/// One increment of one run.
 #[derive(Debug, Clone)]
-pub struct RunRow {
+pub struct IncrementRow<'a> {
     /// Which run.
     pub key: RunKey,
-    /// Requested tier: low, mid or high.
-    pub tier: String,
+    /// The run.
+    pub record: &'a Record,
     /// What was found.
-    pub step: Step,
-    /// What was solved.
-    pub size: ProblemSize,
-    /// Factorisations of K for this mesh up to this row (shared by all methods, friction values and increments).
-    pub factorisations: usize,
-    /// Mesh, cracks, sparsity pattern and elimination order, once per mesh [s].
-    pub setup_s: f64,
-    /// Assembly of K (cell matrices and their sum), once per mesh [s].
-    pub assembly_s: f64,
-    /// Factorisation of K, once per mesh [s].
-    pub factorisation_s: f64,
-    /// Condensation to W, once per mesh, for methods that need it with that of the traction operator [s].
-    pub condensation_s: f64,
-    /// Method's preparation [s].
-    pub prepare_s: f64,
-    /// Method's solve of this increment [s].
-    pub solve_s: f64,
-    /// Of these, without load solve, recovery of displacements and checks of equilibrium [s].
-    pub enforcement_s: f64,
-    /// The same by the account of a program from outside; NaN of all other methods [s].
-    pub reported_s: f64,
+    pub step: &'a Step,
 }
 
-impl RunRow {
-    /// Erases the times: published only for honest verdicts of runs that had the machine to themselves.
-    pub fn forget_times(&mut self) {
-        for time in [
-            &mut self.setup_s,
-            &mut self.assembly_s,
-            &mut self.factorisation_s,
-            &mut self.condensation_s,
-            &mut self.prepare_s,
-            &mut self.solve_s,
-            &mut self.enforcement_s,
-            &mut self.reported_s,
-        ] {
-            *time = f64::NAN;
-        }
+impl<'a> IncrementRow<'a> {
+    /// Those of a run.
+    pub fn of(record: &'a Record) -> impl Iterator<Item = Self> {
+        let steps = record.found.increments.iter();
+        steps.map(move |step| Self {
+            key: RunKey::of(record, step.increment),
+            record,
+            step,
+        })
     }
 }
 
 /// One row of `quantities.csv`.
 #[derive(Debug, Clone)]
-pub struct QuantityRow {
+pub struct QuantityRow<'a> {
     /// Which run.
     pub key: RunKey,
     /// What was found.
-    pub quantity: Quantity,
+    pub quantity: &'a Quantity,
 }
 
 /// Iterations up to this one are all recorded.
@@ -152,11 +137,11 @@ pub struct HistoryRow {
 
 /// One row of `points.csv`: one contact point of one increment.
 #[derive(Debug, Clone)]
-pub struct PointRow {
+pub struct PointRow<'a> {
     /// Which run.
     pub key: RunKey,
     /// What was found.
-    pub point: PointState,
+    pub point: &'a PointState,
 }
 
 /// One row of `exact.csv`: the closed form of a case at a place along its crack; 2D only.
@@ -188,11 +173,11 @@ pub struct ExactRow {
 
 /// The fields of one run: last increment at least, all increments for `.pvd`.
 #[derive(Debug, Clone)]
-pub struct RunFields {
+pub struct RunFields<'a> {
     /// Which run; `increment` is the last one.
     pub key: RunKey,
     /// One entry per recorded increment.
-    pub steps: Vec<FieldStep>,
+    pub steps: &'a [FieldStep],
 }
 
 /// Verdict of a number within its tolerance.
@@ -225,76 +210,6 @@ pub struct ExpectRow {
     pub source: String,
     /// `met`, `missed`, `missed as documented` (a stated limitation) or `met against the documentation`.
     pub verdict: String,
-}
-
-/// Everything a command produced, before it is written.
-#[derive(Debug, Clone, Default)]
-pub struct Results {
-    /// runs.csv
-    pub runs: Vec<RunRow>,
-    /// quantities.csv
-    pub quantities: Vec<QuantityRow>,
-    /// history.csv
-    pub history: Vec<HistoryRow>,
-    /// points.csv
-    pub points: Vec<PointRow>,
-    /// exact.csv
-    pub exact: Vec<ExactRow>,
-    /// expectations.csv
-    pub expectations: Vec<ExpectRow>,
-    /// Fields of selected runs.
-    pub fields: Vec<RunFields>,
-    /// Answers, to be told apart, with the problem of each.
-    pub answers: Vec<(String, Jump)>,
-    /// Why runs gave up and what to change, a line each; not written.
-    pub remarks: Vec<String>,
-}
-
-impl Results {
-    /// Adds the results of another run.
-    pub fn append(&mut self, other: Results) {
-        self.runs.extend(other.runs);
-        self.quantities.extend(other.quantities);
-        self.history.extend(other.history);
-        self.points.extend(other.points);
-        self.exact.extend(other.exact);
-        self.expectations.extend(other.expectations);
-        self.fields.extend(other.fields);
-        self.answers.extend(other.answers);
-        self.remarks.extend(other.remarks);
-    }
-
-    /// The part of these results that is about some cases.
-    pub fn of_cases(&self, names: &[&str]) -> Self {
-        fn part<R: Clone>(rows: &[R], wanted: impl Fn(&R) -> bool) -> Vec<R> {
-            rows.iter().filter(|row| wanted(row)).cloned().collect()
-        }
-        let wanted = |name: &str| names.contains(&name);
-        Self {
-            runs: part(&self.runs, |row| wanted(&row.key.case)),
-            quantities: part(&self.quantities, |row| wanted(&row.key.case)),
-            history: part(&self.history, |row| wanted(&row.key.case)),
-            points: part(&self.points, |row| wanted(&row.key.case)),
-            exact: part(&self.exact, |row| wanted(&row.case)),
-            expectations: part(&self.expectations, |row| wanted(&row.key.case)),
-            fields: part(&self.fields, |run| wanted(&run.key.case)),
-            answers: Vec::new(),
-            remarks: Vec::new(),
-        }
-    }
-
-    /// Number of runs that were to solve a case and did not, for whatever reason; declined ones are none of them.
-    pub fn failures(&self) -> usize {
-        self.runs
-            .iter()
-            .filter(|r| r.step.verdict.is_failure())
-            .count()
-    }
-
-    /// True if no run failed and every expected number came out as stated: the exit code of what made these results.
-    pub fn as_expected(&self) -> bool {
-        self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
-    }
 }
 
 impl ExpectRow {

@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::run::verdict::Verdict;
-use crate::studies::rows::{Jump, Results};
+use crate::studies::measure::Answer;
+use crate::studies::record::Step;
+use crate::studies::rows::{Jump, RunKey};
 
 /// Jumps that differ by more, relative to u_ref and to the largest of both, are those of different answers: a thousand times what tier high
 /// allows the contact laws to be broken.
@@ -11,23 +13,33 @@ pub const DIFFERENT: f64 = 1e-6;
 
 /// Marks what is `solved` on problems to which different answers are known: then none of them is *the* answer. Above the critical
 /// friction of a contact an increment may have several, and which one a method finds depends on where it starts.
-pub fn mark_several(results: &mut Results) {
-    let ambiguous = ambiguous(&results.answers);
-    for row in &mut results.runs {
-        row.step
-            .verdict
-            .mark(ambiguous.contains(&row.key.problem()));
+pub fn mark_several(answers: &mut [Answer]) {
+    let known = answers.iter().flat_map(|own| {
+        let problem = |jump: &Jump| RunKey::of(&own.record, jump.increment).problem();
+        own.jumps.iter().map(move |jump| (problem(jump), jump))
+    });
+    let ambiguous = ambiguous(known);
+    for record in answers.iter_mut().map(|own| &mut own.record) {
+        let problem = |step: &Step| RunKey::of(record, step.increment).problem();
+        let marked = record.found.increments.iter().map(problem);
+        let marked: Vec<bool> = marked.map(|name| ambiguous.contains(&name)).collect();
+        for (step, marked) in record.found.increments.iter_mut().zip(marked) {
+            step.verdict.mark(marked);
+        }
+        if let Some(last) = record.found.increments.last() {
+            record.found.verdict = last.verdict.clone();
+        }
     }
 }
 
 /// Problems with different answers among some.
-pub fn ambiguous(answers: &[(String, Jump)]) -> BTreeSet<String> {
-    let mut problems: BTreeMap<&str, Vec<&Jump>> = BTreeMap::new();
+fn ambiguous<'a>(answers: impl Iterator<Item = (String, &'a Jump)>) -> BTreeSet<String> {
+    let mut problems: BTreeMap<String, Vec<&Jump>> = BTreeMap::new();
     for (problem, jump) in answers {
         problems.entry(problem).or_default().push(jump);
     }
     problems.retain(|_, answers| answers.iter().any(|a| a.differs_from(answers[0])));
-    problems.into_keys().map(str::to_owned).collect()
+    problems.into_keys().collect()
 }
 
 impl Verdict {

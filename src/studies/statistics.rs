@@ -49,11 +49,6 @@ impl Timing {
             samples: n,
         })
     }
-
-    /// Whether the intervals of two timings have a point in common: then neither is faster.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.low_s <= other.high_s && other.low_s <= self.high_s
-    }
 }
 
 /// The larger of two numbers; NaN if one is, which `max` would drop.
@@ -157,20 +152,6 @@ mod tests {
         assert_eq!((two.median_s, two.low_s, two.high_s), (1.5, 1.0, 2.0));
         assert_eq!(Timing::of(&[]), None);
         assert_eq!(Timing::of(&[1.0, f64::NAN]), None);
-    }
-
-    #[test]
-    fn touching_intervals_overlap() {
-        let timing = |low, high| Timing {
-            median_s: low,
-            min_s: low,
-            low_s: low,
-            high_s: high,
-            samples: 9,
-        };
-        assert!(timing(1.0, 2.0).overlaps(&timing(2.0, 3.0)));
-        assert!(timing(1.0, 4.0).overlaps(&timing(2.0, 3.0)));
-        assert!(!timing(1.0, 2.0).overlaps(&timing(2.1, 3.0)));
     }
 
     /// Source: Newcombe, Stat. Med. 17 (1998) 857, Table I, method 3 (Wilson without continuity correction).

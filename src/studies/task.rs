@@ -38,7 +38,7 @@ pub enum Matter {
 }
 
 /// What is asked. Everything that decides about what is found is in here, and nothing else.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
     /// Name of the case, or of the problem of a file.
     pub case: String,

@@ -17,8 +17,8 @@ use stickslip::model::loading::Loading;
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
-use stickslip::studies::rows::Results;
+use stickslip::studies::cases::{Settings, run_case};
+use stickslip::studies::results::Results;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status,
 };
@@ -183,13 +183,7 @@ pub fn solve(text: &str) -> Solved {
 
 /// Runs a case by methods with their default options, one after the other.
 pub fn run(case: &Case, methods: &[&str]) -> Results {
-    let settings = Settings {
-        tier: None,
-        jobs: 1,
-        fields: Fields::None,
-        starts: 1,
-        why: Why::Nothing,
-    };
+    let settings = Settings::PLAIN;
     run_case(case, &choices(methods), settings, &Quiet).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -206,10 +200,10 @@ pub fn value(
     [quantity, at, component]: [&str; 3],
 ) -> f64 {
     let found: Vec<f64> = results
-        .quantities
-        .iter()
+        .quantities()
+        .into_iter()
         .filter(|row| keep(&row.key))
-        .map(|row| &row.quantity)
+        .map(|row| row.quantity)
         .filter(|q| q.name == quantity && q.at == at && q.component == component)
         .map(|q| q.value)
         .collect();

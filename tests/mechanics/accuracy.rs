@@ -197,13 +197,9 @@ fn dissipation(name: &str, refine: usize) -> Vec<f64> {
     case.expects.clear();
     case.sweep.refine = vec![refine];
     let results = run(&case, &[METHOD]);
-    assert!(
-        results
-            .runs
-            .iter()
-            .all(|r| r.step.verdict == Verdict::Solved)
-    );
-    let rows = results.quantities.iter();
+    let mut runs = results.records();
+    assert!(runs.all(|run| run.found.verdict == Verdict::Solved));
+    let rows = results.quantities().into_iter();
     rows.filter(|q| q.quantity.name == "dissipation" && q.quantity.at.is_empty())
         .filter(|q| q.key.increment > 0)
         .map(|q| q.quantity.value)
@@ -294,10 +290,10 @@ fn a_circular_interface_has_its_pressures_and_orders() {
     case.sweep.refine = vec![4];
     let results = run(&case, &[METHOD]);
     let pressure = |angle: f64| {
-        let away = |p: &&stickslip::studies::rows::PointRow| {
+        let away = |p: &stickslip::studies::rows::PointRow<'_>| {
             (p.point.y_m.atan2(p.point.x_m) - angle.to_radians()).abs()
         };
-        let points = results.points.iter();
+        let points = results.points().into_iter();
         let nearest = points.min_by(|p, q| away(p).total_cmp(&away(q))).unwrap();
         nearest.point.p_n / nearest.point.weight / 1e6
     };

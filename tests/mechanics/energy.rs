@@ -3,17 +3,13 @@
 use crate::common::*;
 use stickslip::case::{Case, shipped};
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::rows::Results;
+use stickslip::studies::results::Results;
 
 /// A quantity of the whole body by increment.
 fn history(results: &Results, quantity: &str) -> Vec<f64> {
-    assert!(
-        results
-            .runs
-            .iter()
-            .all(|r| r.step.verdict == Verdict::Solved)
-    );
-    let rows = results.quantities.iter().map(|row| &row.quantity);
+    let mut runs = results.records();
+    assert!(runs.all(|run| run.found.verdict == Verdict::Solved));
+    let rows = results.quantities().into_iter().map(|row| row.quantity);
     rows.filter(|q| q.name == quantity && q.at.is_empty())
         .map(|q| q.value)
         .collect()
@@ -40,7 +36,7 @@ fn friction_takes_what_the_supports_do_and_the_body_does_not_store() {
     let mut found = Vec::new();
     for increments in [1, 4] {
         let results = run(&pushed(increments), &[METHOD]);
-        assert_eq!(results.runs.len(), increments);
+        assert_eq!(results.increments().len(), increments);
         let of = |quantity| last(&results, quantity);
         let dissipation = of("dissipation");
         let lost = of("external_work") - of("strain_energy");
@@ -107,7 +103,11 @@ fn the_state_at_time_0_comes_first_and_its_work_is_not_counted() {
         "displacement_m = [0, -1e-3]\nhistory = \"constant\"",
     );
     let results = run(&parse(&text), &[METHOD]);
-    let increments: Vec<usize> = results.runs.iter().map(|r| r.key.increment).collect();
+    let increments: Vec<usize> = results
+        .increments()
+        .iter()
+        .map(|r| r.key.increment)
+        .collect();
     assert_eq!(increments, [0, 1, 2]);
     let stored = history(&results, "strain_energy");
     let slip = history(&results, "max_slip");
@@ -123,8 +123,12 @@ fn the_state_at_time_0_comes_first_and_its_work_is_not_counted() {
             assert!(work.abs() < 1e-9 * stored[0], "{quantity}: {work:e}");
         }
     }
-    let mut same = run(&pushed(1), &[METHOD]).points;
-    let own = results.points.iter().filter(|p| p.key.increment == 0);
+    let same = run(&pushed(1), &[METHOD]);
+    let mut same = same.points();
+    let own = results
+        .points()
+        .into_iter()
+        .filter(|p| p.key.increment == 0);
     for (a, b) in same.drain(..).zip(own) {
         assert_eq!(
             (a.point.p_n, a.point.slip_a_m),

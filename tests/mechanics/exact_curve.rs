@@ -3,7 +3,8 @@
 use crate::common::run;
 use stickslip::case::Case;
 use stickslip::case::shipped;
-use stickslip::studies::rows::{ExactRow, Results};
+use stickslip::studies::results::Results;
+use stickslip::studies::rows::ExactRow;
 
 fn case(name: &str) -> Case {
     shipped::find(name).unwrap().unwrap()
@@ -89,7 +90,7 @@ fn the_mean_slip_of_a_sliding_block_is_its_slip() {
         let v = 0.01 * f64::min(increment as f64, 6.0);
         let slip = (v - (sliding - lateral) / modulus) / angle.sin();
         let found: Vec<f64> = results
-            .quantities
+            .quantities()
             .iter()
             .filter(|row| row.quantity.name == "mean_slip" && row.key.increment == increment)
             .map(|row| row.quantity.value)

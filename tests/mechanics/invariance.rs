@@ -4,8 +4,8 @@ use crate::common::*;
 use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::progress::Quiet;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
-use stickslip::studies::rows::{Results, RunRow};
+use stickslip::studies::cases::{Fields, Settings, run_case};
+use stickslip::studies::results::Results;
 
 /// Rounding times the conditioning of a plate of a few hundred unknowns.
 const EQUAL: f64 = 1e-10;
@@ -211,13 +211,12 @@ fn a_solid_with_renamed_axes_gives_the_same_numbers() {
 
 /// Everything in results but times; numbers print with as many digits as tell them from their neighbours.
 fn bits(results: &Results) -> String {
-    let mut results = results.clone();
-    for r in &mut results.runs {
-        (r.setup_s, r.assembly_s, r.factorisation_s) = (0.0, 0.0, 0.0);
-        (r.condensation_s, r.prepare_s) = (0.0, 0.0);
-        (r.solve_s, r.enforcement_s) = (0.0, 0.0);
-    }
-    format!("{results:?}")
+    let found = results.answers.iter().map(|own| {
+        let found = &own.record.found;
+        (found, &own.histories, &own.points, &own.fields, &own.jumps)
+    });
+    let found: Vec<_> = found.collect();
+    format!("{found:?} {:?} {:?}", results.exact, results.expectations)
 }
 
 /// Source: every entry is summed in one order. Goal: stiffness, jump operator and everything a run reports have the same
@@ -263,18 +262,14 @@ fn jobs_change_nothing_but_the_times() {
     let methods = choices(&["penalty", "latin"]);
     let [one, two] = [1, 2].map(|jobs| {
         let settings = Settings {
-            tier: None,
             jobs,
-            fields: Fields::None,
-            starts: 1,
-            why: Why::Nothing,
+            ..Settings::PLAIN
         };
         run_case(&case, &methods, settings, &Quiet).unwrap()
     });
     assert!(bits(&one) == bits(&two));
-    assert!(one.runs.iter().any(|r| r.solve_s.is_finite()));
-    let untimed = |r: &RunRow| r.solve_s.is_nan() && r.setup_s.is_nan();
-    assert!(two.runs.iter().all(untimed));
+    assert!(one.records().all(|run| run.spent.is_some()));
+    assert!(two.records().all(|run| run.spent.is_none()));
 }
 
 /// Source: translation; numbers that are multiples of 1/16, moved by powers of two, are exact. Goal: a million sizes from zero
@@ -309,30 +304,27 @@ fn a_body_far_from_zero_gives_the_same_bits() {
     };
     let results = |by| {
         let settings = Settings {
-            tier: None,
-            jobs: 1,
             fields: Fields::All,
-            starts: 1,
-            why: Why::Nothing,
+            ..Settings::PLAIN
         };
         run_case(&case(by), &choices(&["hybrid"]), settings, &Quiet).unwrap()
     };
     let (near, away) = (results([0.0; 2]), results(far));
-    assert_eq!(near.runs[0].step.verdict.to_string(), "solved");
-    assert!(near.points.len() > 10);
-    for (p, q) in near.points.iter().zip(&away.points) {
+    assert_eq!(near.increments()[0].step.verdict.to_string(), "solved");
+    assert!(near.points().len() > 10);
+    for (p, q) in near.points().iter().zip(&away.points()) {
         let forces = |r: &stickslip::model::quantities::PointState| {
             [r.p_n, r.p_a, r.gap_m, r.slip_a_m, r.weight].map(f64::to_bits)
         };
-        assert_eq!(forces(&p.point), forces(&q.point));
+        assert_eq!(forces(p.point), forces(q.point));
         assert_near(p.point.x_m + far[0], q.point.x_m, 1e-9, "x");
         assert_near(p.point.y_m + far[1], q.point.y_m, 1e-9, "y");
     }
-    assert_eq!(near.points.len(), away.points.len());
-    for (a, b) in near.quantities.iter().zip(&away.quantities) {
+    assert_eq!(near.points().len(), away.points().len());
+    for (a, b) in near.quantities().iter().zip(&away.quantities()) {
         assert_eq!(a.quantity, b.quantity);
     }
-    let corners = |r: &Results| r.fields[0].steps[0].body.points.clone();
+    let corners = |r: &Results| r.answers[0].fields[0].body.points.clone();
     for (x, y) in corners(&near).iter().zip(corners(&away)) {
         assert_near(x[0] + far[0], y[0], 1e-9, "field");
     }

@@ -8,7 +8,7 @@ use stickslip::model::body::{Body, Needs};
 use stickslip::model::snapshot::Snapshot;
 use stickslip::run::registry::methods;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::rows::Results;
+use stickslip::studies::results::Results;
 use stickslip_methods::{ContactState, ContactSystem, Increment, Options, Outcome, Silent, Status};
 
 /// One body, one method, increments by hand.
@@ -119,8 +119,8 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
             }
             let results = run(&path.case, &[method.name]);
             let last = results
-                .points
-                .iter()
+                .points()
+                .into_iter()
                 .filter(|p| p.key.increment == increments);
             let forces: Vec<f64> = last.flat_map(|p| [p.point.p_n, p.point.p_a]).collect();
             assert_eq!(forces, states[steps].p, "{name} {}", method.name);
@@ -162,7 +162,7 @@ fn monotone_loading_does_not_depend_on_the_number_of_increments() {
 fn histories(results: &Results, quantity: &str) -> Vec<(String, Vec<f64>)> {
     let mut found: Vec<(String, Vec<f64>)> = Vec::new();
     for q in results
-        .quantities
+        .quantities()
         .iter()
         .filter(|q| q.quantity.name == quantity && q.quantity.at.is_empty())
     {
@@ -196,11 +196,11 @@ fn every_2d_case_has_what_it_expects_its_energy_balances_and_friction_only_dissi
             .retain(|e| e.refine.is_none_or(|refine| refine == 1));
         let results = run(&case, &exact);
         assert!(results.as_expected(), "{name}: {:?}", results.expectations);
-        for row in &results.runs {
+        for row in results.increments() {
             assert_eq!(row.step.verdict, Verdict::Solved, "{:?}", row.key);
         }
         for (run, values) in histories(&results, "energy_identity") {
-            let at_time_0 = results.runs[0].key.increment == 0;
+            let at_time_0 = results.increments()[0].key.increment == 0;
             let count = case.path.increments + usize::from(at_time_0);
             assert_eq!(values.len(), count, "{run}");
             for value in values {

@@ -268,9 +268,14 @@ fn a_held_body_carries_its_initial_stress_across_the_crack() {
                 &[name],
             );
             // It acts at time 0, too.
-            assert_eq!(results.runs.len(), 3, "{name} {:?}", results.runs);
-            assert!(!results.points.is_empty());
-            for point in &results.points {
+            assert_eq!(
+                results.increments().len(),
+                3,
+                "{name} {:?}",
+                results.increments()
+            );
+            assert!(!results.points().is_empty());
+            for point in results.points() {
                 let factor = [0.5, 0.5, 1.5][point.key.increment];
                 let (p, q) = (
                     point.point.p_n / point.point.weight,

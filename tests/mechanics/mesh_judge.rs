@@ -141,17 +141,18 @@ fn a_layer_that_holds_too_few_digits_is_suspect() {
             &(layer.concat() + &supports.concat()),
         );
         let results = run(&parse(&text), &["hybrid"]);
-        results.runs.last().expect("a run").clone()
+        let last = results.answers.into_iter().next_back().expect("a run");
+        last.record.found.increments[0].clone()
     };
     let (thin, thick) = (between(5e-7), between(1e-2));
-    let told = thin.step.verdict.to_string();
+    let told = thin.verdict.to_string();
     println!(
         "{told}; sway {:.1e} and {:.1e}",
-        thin.step.judge.sway, thick.step.judge.sway
+        thin.judge.sway, thick.judge.sway
     );
     assert!(told.starts_with("suspect mesh: slender parts"), "{told}");
-    assert_eq!(thick.step.verdict.to_string(), "solved");
-    assert!(thick.step.judge.sway < 1e-4 * thin.step.judge.sway);
+    assert_eq!(thick.verdict.to_string(), "solved");
+    assert!(thick.judge.sway < 1e-4 * thin.judge.sway);
 }
 
 /// Goal: a piece that its crack cuts off with too few contact points is refused at the crack, not at the supports.

@@ -7,19 +7,14 @@ use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
-use stickslip::studies::rows::{Results, RunKey};
+use stickslip::studies::cases::{Settings, run_case};
+use stickslip::studies::results::Results;
+use stickslip::studies::rows::RunKey;
 use stickslip_methods::{
     Claim, ContactState, ContactSystem, Increment, Load, Options, Outcome, Silent, Status, Tier,
 };
 
-const SETTINGS: Settings = Settings {
-    tier: None,
-    jobs: 1,
-    fields: Fields::None,
-    starts: 1,
-    why: Why::Nothing,
-};
+const SETTINGS: Settings = Settings::PLAIN;
 
 const TRACTION: Needs = Needs {
     frictionless: false,
@@ -85,7 +80,7 @@ fn the_sliding_block_is_solved_exactly() {
         let case = shipped(name);
         let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
         let mut checked = 0;
-        for run in &results.runs {
+        for run in results.increments() {
             assert_eq!(run.step.verdict, Verdict::Solved, "{:?}", run.key);
             for expect in case.expects.iter().filter(|e| applies(e, &case, &run.key)) {
                 let at = [&expect.quantity, &expect.at, &expect.component];
@@ -126,7 +121,11 @@ fn the_plate_agrees_with_the_multipliers_on_every_mesh() {
         let mut list = choices(&[METHOD]);
         list.extend(variants());
         let results = run_case(&case, &list, SETTINGS, &Quiet).unwrap();
-        for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
+        for run in results
+            .increments()
+            .iter()
+            .filter(|r| r.key.method != METHOD)
+        {
             assert!(
                 matches!(run.step.verdict, Verdict::Approximate(_)),
                 "{:?}",
@@ -165,7 +164,11 @@ fn the_beam_agrees_with_the_multipliers() {
     list.extend(variants());
     let results = run_case(&case, &list, SETTINGS, &Quiet).unwrap();
     let mut worst: f64 = 0.0;
-    for run in results.runs.iter().filter(|r| r.key.method != METHOD) {
+    for run in results
+        .increments()
+        .iter()
+        .filter(|r| r.key.method != METHOD)
+    {
         assert!(
             matches!(run.step.verdict, Verdict::Approximate(_)),
             "{:?}",
@@ -363,7 +366,7 @@ fn reactions_balance_the_load_where_the_crack_meets_a_support() {
         + &load("right", "traction_pa = [-1e-3, 2e-4]");
     let case = parse(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest));
     let results = run_case(&case, &variants(), SETTINGS, &Quiet).unwrap();
-    for run in &results.runs {
+    for run in results.increments() {
         assert!(
             matches!(run.step.verdict, Verdict::Approximate(_)),
             "{:?}: {}",
@@ -407,8 +410,8 @@ fn a_consistency_term_is_never_taken_for_equilibrium() {
     };
     let case = shipped("plate_mesh1");
     let results = run_case(&case, &choices(&["nitsche"]), settings, &Quiet).unwrap();
-    assert!(!results.runs.is_empty());
-    for run in &results.runs {
+    assert!(!results.increments().is_empty());
+    for run in results.increments() {
         let graded = run.step.verdict == Verdict::Approximate(Some(Tier::Low));
         assert!(
             graded && run.step.judge.claimed_equilibrium <= 1e-12,

@@ -231,7 +231,8 @@ fn supports_on_both_lips_carry_their_own() {
         10,
         &(held("left", "y >= 5", "[1e-3, \"free\"]") + &held("left", "y <= 5", "[2e-3, 0]")),
     ) + &load("right", "traction_pa = [\"3e-4 - 2e-5 y\", 0]");
-    let rows = run(&parse(&text), &[METHOD]).quantities;
+    let results = run(&parse(&text), &[METHOD]);
+    let rows = results.quantities();
     let reactions = rows.iter().filter(|r| r.quantity.name == "reaction");
     let x = reactions.filter(|r| r.quantity.component == "x");
     let sum: f64 = x.map(|r| r.quantity.value).sum();

@@ -25,12 +25,8 @@ fn overlaps(cells: usize, space: ContactSpace, stress: Option<Dilatation>) -> [f
     let mut case = half_open(cells, space);
     case.dilatation = stress;
     let results = run(&case, &["hybrid"]);
-    assert!(
-        results
-            .runs
-            .iter()
-            .all(|r| r.step.verdict == Verdict::Solved)
-    );
+    let mut runs = results.records();
+    assert!(runs.all(|run| run.found.verdict == Verdict::Solved));
     let found = |quantity| value(&results, |_| true, [quantity, "crack-1", ""]);
     let whole = |quantity| value(&results, |_| true, [quantity, "", ""]);
     let quantities = ["max_penetration", "max_penetration_sampled"];

@@ -3,7 +3,7 @@
 use crate::common::*;
 use stickslip::case::shipped;
 use stickslip::run::registry::methods;
-use stickslip::studies::rows::Results;
+use stickslip::studies::results::Results;
 
 fn exact() -> Vec<&'static str> {
     let methods = methods().iter().filter(|m| m.exact);

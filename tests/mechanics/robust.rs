@@ -3,13 +3,13 @@
 use crate::common::*;
 use stickslip::run::progress::Quiet;
 use stickslip::run::verdict::Verdict;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::cases::{Settings, run_case};
 
 const EXACT: [&str; 3] = ["b-newton", "augmented-lagrangian", "latin"];
 
 fn assert_solved(text: &str) {
     let results = run(&parse(text), &EXACT);
-    for row in &results.runs {
+    for row in results.increments() {
         assert_eq!(
             row.step.verdict,
             Verdict::Solved,
@@ -17,7 +17,7 @@ fn assert_solved(text: &str) {
             row.key.method
         );
     }
-    assert_eq!(results.runs.len(), EXACT.len());
+    assert_eq!(results.increments().len(), EXACT.len());
 }
 
 /// Source: rounding of K u is relative to |K| |u|. Goal: a cantilever, whose |K| |u| is 10⁶ times |K u|, is solved and
@@ -76,9 +76,10 @@ fn overlapping_supports_balance_the_load_once() {
         &parse(&plane([-1.0, -1.0], [1.0, 1.0], [8, 8], &rest)),
         &["b-newton"],
     );
+    let quantities = results.quantities();
     for (component, applied) in [("x", 6e-3), ("y", -2e-3)] {
         let rows = || {
-            let all = results.quantities.iter();
+            let all = quantities.iter();
             all.filter(|q| q.quantity.name == "reaction" && q.quantity.component == component)
         };
         let total: f64 = rows().map(|q| q.quantity.value).sum();
@@ -120,17 +121,14 @@ fn who_finds_different_answers_is_told_so() {
     };
     let verdicts = |mu, methods: &[&str], starts| -> Vec<Verdict> {
         let settings = Settings {
-            tier: None,
-            jobs: 1,
-            fields: Fields::None,
             starts,
-            why: Why::Nothing,
+            ..Settings::PLAIN
         };
         let results = run_case(&parse(&body(mu)), &choices(methods), settings, &Quiet).unwrap();
         results
-            .runs
-            .into_iter()
-            .map(|row| row.step.verdict)
+            .records()
+            .flat_map(|run| &run.found.increments)
+            .map(|step| step.verdict.clone())
             .collect()
     };
     let steep = [3.760629542764099, 3.36346893277615, 3.3810203294188796];

@@ -5,6 +5,7 @@ use stickslip::case::shipped;
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::registry::methods;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::results::Results;
 
 fn names(exact: bool) -> Vec<&'static str> {
     let methods = methods().iter().filter(|m| m.exact || !exact);
@@ -20,9 +21,19 @@ fn one_factorisation_serves_every_friction_value_method_and_increment() {
     case.path.increments = 3;
     let results = run(&case, &names(false));
     let expected = methods().len() * 2 * 2 * 3;
-    assert!(results.runs.len() > expected / 2, "{}", results.runs.len());
-    for row in &results.runs {
-        assert_eq!(row.factorisations, 1, "{:?}", row.key);
+    assert!(
+        results.increments().len() > expected / 2,
+        "{}",
+        results.increments().len()
+    );
+    for row in results.increments() {
+        let spent = row.record.spent.as_ref();
+        assert_eq!(
+            spent.map(|own| own.factorisations),
+            Some(1),
+            "{:?}",
+            row.key
+        );
     }
 }
 
@@ -32,8 +43,9 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
     let case = shipped::find("tension_open").unwrap().unwrap();
     for method in methods() {
         let results = run(&case, &[method.name]);
-        assert_eq!(results.runs.len(), 1);
-        let row = &results.runs[0];
+        assert_eq!(results.increments().len(), 1);
+        let row = &results.increments()[0];
+        let spent = row.record.spent.as_ref();
         assert_eq!(row.step.verdict, Verdict::Solved, "{}", method.name);
         assert_eq!(
             (row.step.solves, row.step.iterations),
@@ -41,11 +53,24 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
             "{}",
             method.name
         );
-        assert_eq!(row.condensation_s, 0.0, "{}", method.name);
+        assert_eq!(
+            spent.map(|own| own.condensation_s),
+            Some(0.0),
+            "{}",
+            method.name
+        );
     }
     let found = solve(&case.source);
     assert_eq!(found.body.elastic.counters().condensations, 0);
     assert_eq!(found.body.elastic.counters().factorisations, 1);
+}
+
+/// Contact unknowns and points of every run.
+fn sizes(results: &Results) -> Vec<[usize; 2]> {
+    let problems = results
+        .records()
+        .map(|run| run.found.problem.as_ref().unwrap());
+    problems.map(|own| [own.unknowns, own.points]).collect()
 }
 
 /// μ = 0: no tangential rows, so as many contact unknowns as points; with friction twice (2D) and three times (3D).
@@ -53,18 +78,15 @@ fn an_open_crack_costs_one_solve_and_nothing_else() {
 fn a_frictionless_crack_has_one_unknown_per_point() {
     let case = shipped::find("frictionless").unwrap().unwrap();
     let results = run(&case, &names(false));
-    for row in &results.runs {
-        assert_eq!(row.size.unknowns, row.size.points, "{:?}", row.key);
-        assert!(row.size.points > 0);
+    for [unknowns, points] in sizes(&results) {
+        assert_eq!(unknowns, points);
+        assert!(points > 0);
     }
     let mut case = shipped::find("plate_mesh1").unwrap().unwrap();
     case.sweep.friction = vec![0.0, 0.1];
     let results = run(&case, &["b-newton"]);
-    assert_eq!(results.runs[0].size.unknowns, results.runs[0].size.points);
-    assert_eq!(
-        results.runs[1].size.unknowns,
-        2 * results.runs[1].size.points
-    );
+    let [none, some] = [0, 1].map(|run| sizes(&results)[run]);
+    assert_eq!([none[0], some[0]], [none[1], 2 * some[1]]);
     let rest = support("\"bottom\"", "[0, 0, 0]") + &support("\"top\"", "[1e-3, 0, -1e-3]");
     for (mu, components) in [(0.0, 1), (0.2, 3)] {
         let planes = [([0.0, 0.0, 0.5], [0.0, 0.0, 1.0], mu)];
@@ -72,10 +94,8 @@ fn a_frictionless_crack_has_one_unknown_per_point() {
             &parse(&solid([1.0, 1.0, 1.0], [2, 2, 3], &planes, &rest)),
             &["b-newton"],
         );
-        assert_eq!(
-            results.runs[0].size.unknowns,
-            components * results.runs[0].size.points
-        );
+        let [unknowns, points] = sizes(&results)[0];
+        assert_eq!(unknowns, components * points);
     }
 }
 

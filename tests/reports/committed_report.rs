@@ -11,13 +11,13 @@ use std::path::Path;
 
 use stickslip::case::shipped;
 use stickslip::report::tables::catalogue;
-use stickslip::report::tables::runs::ExpectSummary;
+use stickslip::report::tables::details::ExpectSummary;
 use stickslip::report::{standard, table};
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::cases::{Settings, run_case};
 use stickslip::studies::paper::comparison::comparison;
-use stickslip::studies::rows::Results;
+use stickslip::studies::results::Results;
 
 /// Columns printed with two to four digits.
 const FEW_DIGITS: [&str; 14] = [
@@ -197,13 +197,7 @@ fn fresh_tables() -> BTreeMap<String, Vec<u8>> {
         };
         return names.filter_map(read).collect();
     }
-    let settings = Settings {
-        tier: None,
-        jobs: 1,
-        fields: Fields::None,
-        starts: 1,
-        why: Why::Nothing,
-    };
+    let settings = Settings::PLAIN;
     let mut results = Results::default();
     for name in QUICK {
         let case = shipped::find(name).expect("a case").expect("shipped");
@@ -212,7 +206,7 @@ fn fresh_tables() -> BTreeMap<String, Vec<u8>> {
     assert!(results.as_expected(), "{}", standard::summary(&results));
     let summary = ExpectSummary::of(&results.expectations);
     let tables = [
-        ("comparison.csv", table::csv(&comparison(&results.runs))),
+        ("comparison.csv", table::csv(&comparison(results.records()))),
         ("expectations_by_case.csv", table::csv(&summary)),
     ];
     tables

@@ -17,9 +17,9 @@ fn root(path: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Columns of `cells.csv` by id.
+/// Columns of `runs.csv` by id.
 fn committed() -> BTreeMap<String, BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(root("reports/study/cells.csv")).unwrap();
+    let mut reader = csv::Reader::from_path(root("reports/study/runs.csv")).unwrap();
     let rows = reader.deserialize::<BTreeMap<String, String>>();
     rows.map(|row| row.unwrap())
         .map(|row| (row["id"].clone(), row))

@@ -1,11 +1,12 @@
 //! Figures say what they show, keep to their paper, come out the same twice, and hide nothing.
 
-use crate::report_data::figures::{comparison_of_methods, figures, load_path, of_results, one};
-use crate::report_data::{beam, beam_step, key, plate, results};
+use crate::report_data::figures::{comparison_of_methods, figures, of_results, one};
+use crate::report_data::{answer, beam, beam_step, cycle, key, plate, points, results, solved};
 use stickslip::report::figures::CATALOGUE;
 use stickslip::report::plot;
 use stickslip::run::registry::methods;
-use stickslip::studies::rows::{HistoryRow, Results, RunFields};
+use stickslip::studies::measure::Answer;
+use stickslip::studies::results::Results;
 
 /// Values of an attribute of all elements of a name.
 fn attributes<'a>(svg: &'a str, element: &str, name: &str) -> Vec<&'a str> {
@@ -116,9 +117,10 @@ fn equal_data_give_equal_bytes_in_any_order() {
     assert_eq!(figures(), figures());
     let mut all = comparison_of_methods();
     let before = of_results(&all);
-    all.history.reverse();
-    all.points.reverse();
-    all.runs.reverse();
+    all.answers.reverse();
+    for own in &mut all.answers {
+        own.points.iter_mut().for_each(|points| points.reverse());
+    }
     assert_eq!(before, of_results(&all));
 }
 
@@ -149,22 +151,19 @@ fn all_methods_are_told_or_counted() {
 #[test]
 fn methods_that_agree_share_a_band_and_others_stand_out() {
     let mut all = comparison_of_methods();
-    let like = crate::report_data::points(&key("b-newton", 0.1));
-    let count = like.len();
-    for (index, row) in all.points.iter_mut().enumerate() {
-        row.point = like[index % count].point.clone();
+    for own in &mut all.answers {
+        own.points = vec![points("b-newton", 0.1)];
     }
     let exact = methods().iter().filter(|method| method.exact).count();
     let band = |count: usize, apart: &str| format!("{count} exact methods agree to {apart}");
     let svg = one(&all, ".profile.svg");
     assert!(svg.contains(&band(exact, "1e-12")) && !svg.contains(">latin<"));
     assert!(svg.contains(">closed form<"), "the case has one");
-    for row in &mut all.points {
-        match row.key.method.as_str() {
-            "latin" => row.point.p_n *= 1.02,
-            "nsgs" => row.point.p_n *= 1.0 - 4e-4,
-            _ => {}
-        }
+    for (method, factor) in [("latin", 1.02), ("nsgs", 1.0 - 4e-4)] {
+        let mut runs = all.answers.iter_mut();
+        let own = runs.find(|own| own.record.found.method == method);
+        let points = own.expect("a run").points.iter_mut().flatten();
+        points.for_each(|point| point.p_n *= factor);
     }
     let svg = one(&all, ".profile.svg");
     assert!(
@@ -185,10 +184,11 @@ fn methods_that_agree_share_a_band_and_others_stand_out() {
 fn what_the_tolerance_leaves_of_forces_is_drawn_as_zero() {
     let axis = |factor: f64| {
         let mut results = comparison_of_methods();
-        for row in &mut results.points {
+        let points = results.answers.iter_mut().flat_map(|own| &mut own.points);
+        for point in points.flatten() {
             // P_ref is 1e8 N/m, the tier high: 0.1 N/m.
-            row.point.p_n = factor * row.point.weight;
-            (row.point.p_a, row.point.status) = (0.0, "open".into());
+            point.p_n = factor * point.weight;
+            (point.p_a, point.status) = (0.0, "open".into());
         }
         results.exact.clear();
         let svg = one(&results, ".profile.svg");
@@ -200,12 +200,12 @@ fn what_the_tolerance_leaves_of_forces_is_drawn_as_zero() {
 
 #[test]
 fn only_paths_that_run_back_are_loops() {
-    assert!(one(&load_path(), ".loop.svg").contains("mean slip [mm]"));
+    assert!(one(&cycle(), ".loop.svg").contains("mean slip [mm]"));
     for increments in [3, 4] {
-        let mut short = load_path();
-        short
-            .quantities
-            .retain(|row| row.key.increment <= increments);
+        let mut short = cycle();
+        for own in &mut short.answers {
+            own.record.found.increments.truncate(increments);
+        }
         assert!(
             of_results(&short).is_empty(),
             "{increments} increments, or only forth"
@@ -216,20 +216,16 @@ fn only_paths_that_run_back_are_loops() {
 #[test]
 fn sparse_data_and_hostile_names_are_drawn() {
     let mut results = Results::default();
-    for violation in [0.0, f64::NAN] {
-        let mut key = key("a\u{E000}b", 0.1);
-        key.case = "<script>&".into();
-        let iteration = results.history.len();
-        results.history.push(HistoryRow {
-            key,
-            iteration,
-            violation,
-        });
-    }
+    let mut key = key("a\u{E000}b", 0.1);
+    key.case = "<script>&".into();
+    results.answers.push(Answer {
+        histories: vec![vec![0.0, f64::NAN]],
+        ..answer(&key, vec![solved(1)])
+    });
     let svg = one(&results, ".residual.svg");
     assert!(!svg.contains("NaN") && !svg.contains("<script>"));
     assert!(svg.contains("&lt;script&gt;&amp;") && svg.contains(">ab<"));
-    results.history.remove(0);
+    results.answers[0].histories[0].remove(0);
     assert!(
         of_results(&results).is_empty(),
         "nothing to draw is no figure"
@@ -292,8 +288,8 @@ fn the_solid_behind_a_crack_is_a_body_and_the_rest_an_outline() {
 #[test]
 fn solids_have_no_painted_fields() {
     let mut results = results();
-    let (key, steps) = (key("b-newton", 0.1), vec![beam_step()]);
-    results.fields = vec![RunFields { key, steps }];
+    results.answers.truncate(1);
+    results.answers[0].fields = vec![beam_step()];
     let of = |end: &str| {
         of_results(&results)
             .iter()

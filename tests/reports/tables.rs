@@ -69,16 +69,18 @@ fn table2_rows() -> Vec<Table2Row> {
 fn rows_are_sorted_whatever_the_order_they_came_in() {
     let forward = results();
     let mut backward = forward.clone();
-    backward.runs.reverse();
-    backward.quantities.reverse();
-    backward.history.reverse();
-    backward.points.reverse();
+    backward.answers.reverse();
+    for own in &mut backward.answers {
+        own.record.found.increments[0].quantities.reverse();
+        own.points[0].reverse();
+    }
     backward.expectations.reverse();
     let (mut a, mut b) = (Bundle::new(), Bundle::new());
     standard::add_tables(&mut a, &forward).expect("tables");
     standard::add_tables(&mut b, &backward).expect("tables");
     for path in [
         "runs.csv",
+        "increments.csv",
         "quantities.csv",
         "history.csv",
         "points.csv",
@@ -111,7 +113,8 @@ fn points_read_back_to_ten_digits() {
     let mut reader = csv::Reader::from_reader(bundle.get("points.csv").expect("points.csv"));
     let header = reader.headers().expect("a header").clone();
     let column = |name: &str| header.iter().position(|h| h == name).expect("a column");
-    let mut expected = results().points;
+    let made = results();
+    let mut expected = made.points();
     expected.sort_by(|a, b| {
         let points = a.point.number.cmp(&b.point.number);
         a.key.order(&b.key).then(points)
@@ -148,7 +151,7 @@ fn quotes_and_commas_survive_the_csv() {
 fn negative_zero_and_round_off_residuals_print_as_zero() {
     let bundle = csv_bundle();
     assert!(text(&bundle, "quantities.csv").contains(",reaction,top,x,0,N/m\n"));
-    let mut reader = csv::Reader::from_reader(bundle.get("runs.csv").expect("a file"));
+    let mut reader = csv::Reader::from_reader(bundle.get("increments.csv").expect("a file"));
     let header = reader.headers().expect("a header").clone();
     let column = header.iter().position(|name| name == "equilibrium");
     let column = column.expect("documented");
@@ -210,12 +213,11 @@ fn paper_tables_show_printed_values_beside_ours() {
 #[test]
 fn wrong_answers_have_no_profile_and_no_time() {
     let mut results = results();
-    for row in results
-        .runs
-        .iter_mut()
-        .filter(|row| row.key.method == "latin")
-    {
-        row.step.verdict = Verdict::FalseClaim;
+    for found in results.answers.iter_mut().map(|own| &mut own.record.found) {
+        if found.method == "latin" {
+            found.verdict = Verdict::FalseClaim;
+            found.increments[0].verdict = Verdict::FalseClaim;
+        }
     }
     let bundle = standard::bundle(&results, &Provenance::collect(1)).expect("a bundle");
     let profile = text(
@@ -232,7 +234,7 @@ fn wrong_answers_have_no_profile_and_no_time() {
         "a failure is shown where it is one"
     );
     // In the form for reading; the file of rows holds what was measured.
-    let table = readable(&results.runs, "");
+    let table = readable(&standard::runs(&results), "");
     let verdict = table.columns.iter().position(|c| c.name == "verdict");
     let time = table.columns.iter().position(|c| c.name == "solve");
     let (verdict, time) = (verdict.expect("a verdict"), time.expect("a time"));
@@ -251,7 +253,9 @@ fn provenance_is_in_its_own_file_only() {
     assert_eq!(parsed["version"].as_str(), Some(env!("CARGO_PKG_VERSION")));
     assert_eq!(parsed["threads"].as_integer(), Some(3));
     assert_eq!(parsed["options"]["tier"].as_str(), Some("high"));
-    for name in ["commit", "dirty", "rustc", "target", "profile", "os", "cpu"] {
+    for name in [
+        "command", "commit", "dirty", "rustc", "target", "profile", "os", "cpu",
+    ] {
         assert!(
             parsed[name].as_str().is_some_and(|text| !text.is_empty()),
             "{name}"

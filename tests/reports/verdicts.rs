@@ -7,21 +7,22 @@ use crate::report_data::results;
 use stickslip::case;
 use stickslip::report::table::{self, Row, readable};
 use stickslip::report::tables::causes::WhyRow;
-use stickslip::report::tables::sweep::CellRow;
+use stickslip::report::tables::runs::RunRow;
 use stickslip::report::{Bundle, Claim, Provenance, page, plan, standard};
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::verdict::{Accuracy, Verdict, VerdictKind};
 use stickslip::studies::axes::{Axes, Subject, named};
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::cases::{Settings, run_case};
 use stickslip::studies::convergence::orders::{self, ErrorRow};
 use stickslip::studies::convergence::{Measured, Sample, Variant};
+use stickslip::studies::measure::Answer;
 use stickslip::studies::paper::comparison::comparison;
-use stickslip::studies::paper::converged_reactions::SequenceRow;
 use stickslip::studies::paper::penalty::PenaltyRow;
 use stickslip::studies::paper::printed_tables::{Table1Row, Table2Row};
 use stickslip::studies::record::{Found, Record};
-use stickslip::studies::rows::{Results, RunRow};
+use stickslip::studies::results::Results;
+use stickslip::studies::rows::IncrementRow;
 use stickslip::studies::task::Looks;
 use stickslip::studies::tips::Regularity;
 use stickslip::studies::why::Explanation;
@@ -47,12 +48,13 @@ fn of_kind(kind: VerdictKind) -> Verdict {
 }
 
 /// A run of each kind, every one on a case of its own.
-fn runs() -> Vec<RunRow> {
+fn runs() -> Vec<Answer> {
     let run = |kind: &VerdictKind| {
-        let mut row = results().runs.swap_remove(0);
-        row.key.case = format!("case-{}", kind.name());
-        row.step.verdict = of_kind(*kind);
-        row
+        let mut own = results().answers.swap_remove(0);
+        own.record.asked.case = format!("case-{}", kind.name());
+        own.record.found.verdict = of_kind(*kind);
+        own.record.found.increments[0].verdict = of_kind(*kind);
+        own
     };
     VerdictKind::ALL.iter().map(run).collect()
 }
@@ -111,7 +113,9 @@ fn says_not_run<R: Row>(row: R) {
 #[test]
 fn every_kind_stands_in_every_table() {
     for run in runs() {
-        let (verdict, key) = (run.step.verdict.clone(), run.key.clone());
+        let run = run.record;
+        let row = IncrementRow::of(&run).next().unwrap();
+        let (verdict, key) = (row.step.verdict.clone(), row.key.clone());
         let table1_row = |verdict| Table1Row::new("I", 0.1, "latin", None, Some(973.3), verdict);
         let table2_row = |verdict| {
             let printed = Table2Row::printed("I", "as-printed", "y", [0.1; 7]);
@@ -149,21 +153,17 @@ fn every_kind_stands_in_every_table() {
             };
             orders::rows(&[sample]).0.swap_remove(0)
         };
-        let sequence = || SequenceRow {
-            mesh: "I",
-            found: error(),
-        };
-        let compared = || comparison(std::slice::from_ref(&run)).swap_remove(0);
+        let compared = || comparison([&run]).swap_remove(0);
         let known = || Some(verdict.clone());
         for found in [
-            read_back(run.clone(), "verdict"),
+            read_back(row, "verdict"),
+            read_back(RunRow(&run), "verdict"),
             read_back(compared(), "verdict"),
             read_back(table1_row(known()), "verdict"),
             read_back(table2_row(known()), "verdict"),
             read_back(penalty(known()), "verdict"),
-            read_back(sequence(), "verdict"),
             read_back(error(), "verdict"),
-            read_back(CellRow(&record), "verdict"),
+            read_back(RunRow(&record), "verdict"),
             read_back(
                 WhyRow::all(std::slice::from_ref(&record)).swap_remove(0),
                 "verdict",
@@ -178,10 +178,12 @@ fn every_kind_stands_in_every_table() {
 }
 
 /// The folder of a report on these runs.
-fn folder_of(runs: &[RunRow]) -> tempfile::TempDir {
+fn folder_of(answers: &[Answer]) -> tempfile::TempDir {
     let (dir, mut bundle) = (tempfile::tempdir().unwrap(), Bundle::new());
-    let compared = comparison(runs);
-    table::add(&mut bundle, runs, "").unwrap();
+    let runs = answers.iter().map(|own| &own.record);
+    let compared = comparison(runs.clone());
+    let runs: Vec<RunRow<'_>> = runs.map(RunRow).collect();
+    table::add(&mut bundle, &runs, "").unwrap();
     table::add(&mut bundle, &compared, "").unwrap();
     let claim = Claim::new(dir.path(), plan("run"), false).unwrap();
     claim.commit(&bundle).unwrap();
@@ -203,7 +205,7 @@ fn every_kind_is_counted_once_on_the_page() {
     let all = runs();
     let html = page::of_folder(folder_of(&all).path()).unwrap();
     let counts = facts(&html);
-    let told = format!("solved, of {} increments: the contact laws hold", all.len());
+    let told = format!("solved, of {} runs: the contact laws hold", all.len());
     assert!(counts.contains(&(told, 1)), "{counts:?}");
     // Refused ones are neither answers nor failures.
     let of = |label: &str| counts.iter().find(|c| c.0.starts_with(label)).map(|c| c.1);
@@ -226,13 +228,13 @@ fn every_kind_is_counted_once_on_the_page() {
 #[test]
 fn every_failure_is_one_in_the_exit_code() {
     for run in runs() {
-        let expected = match run.step.verdict.kind() {
+        let expected = match run.record.found.verdict.kind() {
             VerdictKind::Solved | VerdictKind::Approximate | VerdictKind::Refused => 0,
             _ => 1,
         };
-        let name = run.step.verdict.to_string();
+        let name = run.record.found.verdict.to_string();
         let results = Results {
-            runs: vec![run],
+            answers: vec![run],
             ..Results::default()
         };
         assert_eq!(results.failures(), expected, "{name}");
@@ -298,18 +300,12 @@ fn pressed(cells: usize) -> String {
 fn an_error_of_memory_is_told_by_its_type_and_fails_the_run() {
     let case = case::parse("pressed.toml", pressed(3)).unwrap();
     assert!(case.expects.is_empty());
-    let settings = Settings {
-        tier: None,
-        jobs: 1,
-        fields: Fields::None,
-        starts: 1,
-        why: Why::Nothing,
-    };
+    let settings = Settings::PLAIN;
     for method in [&AT_ONCE, &LATER] {
         let choice = Choice::new(method, &[]).unwrap();
         let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
-        assert_eq!(results.runs.len(), 1);
-        assert_eq!(results.runs[0].step.verdict, Verdict::OutOfMemory);
+        assert_eq!(results.increments().len(), 1);
+        assert_eq!(results.increments()[0].step.verdict, Verdict::OutOfMemory);
         assert!(!results.as_expected());
         let dir = tempfile::tempdir().unwrap();
         let bundle = standard::bundle(&results, &Provenance::collect(1)).unwrap();

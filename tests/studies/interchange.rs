@@ -11,7 +11,7 @@ use stickslip::files::interchange::{
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::methods;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::cases::{Settings, run_case};
 use stickslip_methods::Tier;
 use tempfile::TempDir;
 
@@ -48,13 +48,11 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     let choice = Choice::new(stickslip::run::registry::method(method).unwrap(), &[]).unwrap();
     let settings = Settings {
         tier: Some(Tier::High),
-        jobs: 1,
-        fields: Fields::None,
-        starts: 1,
-        why: Why::Nothing,
+        ..Settings::PLAIN
     };
     let results = run_case(&case, &[choice], settings, &Quiet).unwrap();
-    let own = (results.points.iter()).filter(|row| row.key.increment == increment);
+    let own = results.points();
+    let own = own.iter().filter(|row| row.key.increment == increment);
     let dim = case.model.dim();
     own.flat_map(|row| {
         [row.point.p_n, row.point.p_a, row.point.p_b]

@@ -164,7 +164,7 @@ fn an_id_means_bits() {
     assert_eq!(measured(dir.path(), join), 0);
     equal("joined", &kept(&dir.path().join("all"), tasks), &expected);
     // Tables without times are equal byte by byte.
-    for table in ["cells", "increments", "success"] {
+    for table in ["increments", "success"] {
         let of = |out: &str| fs::read(dir.path().join(format!("{out}/{table}.csv"))).unwrap();
         assert!(of("whole") == of("all"), "{table}");
     }
@@ -343,7 +343,7 @@ fn a_study_of_cases_and_its_list_are_views_of_the_same_plan() {
     assert_eq!(dealt, ids);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
     assert_eq!(measured(dir.path(), &format!("{cases} --untimed")), 24);
-    let table = fs::read_to_string(dir.path().join("results/study/cells.csv")).unwrap();
+    let table = fs::read_to_string(dir.path().join("results/study/runs.csv")).unwrap();
     let rows = csv_rows(&table).into_iter();
     let mut found: Vec<String> = rows.map(|row| row["id"].clone()).collect();
     found.sort();

@@ -9,20 +9,14 @@ use stickslip::run::progress::Quiet;
 use stickslip::run::registry::methods;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::analysis::success::success;
-use stickslip::studies::cases::{Fields, Settings, Why, run_case};
+use stickslip::studies::cases::{Settings, run_case};
 use stickslip::studies::measure::{Bench, MeasureError, RunError, here};
 use stickslip::studies::plan::Plan;
 use stickslip::studies::record::Record;
-use stickslip::studies::rows::Results;
+use stickslip::studies::results::Results;
 use stickslip::studies::sources::random::{Kind, Specimen, Stream, problems};
 
-const SETTINGS: Settings = Settings {
-    tier: None,
-    jobs: 1,
-    fields: Fields::None,
-    starts: 1,
-    why: Why::Nothing,
-};
+const SETTINGS: Settings = Settings::PLAIN;
 
 /// Increments of 100 that every exact method must solve, what is missing gave up and said so. Measured on these bodies:
 /// in 2D 299 of 300 by the augmented Lagrangian method and all by the others, in 3D 79 of 80 by LATIN and all by the
@@ -65,7 +59,7 @@ impl Answer {
 
 /// Answers of the exact methods that solved the last increment.
 fn answers(results: &Results, dim: usize) -> Vec<Answer> {
-    let rows = results.runs.iter();
+    let rows = results.increments().into_iter();
     rows.filter(|r| r.step.verdict == Verdict::Solved && r.key.increment == 2)
         .filter_map(|r| {
             let of = |c: &&str| value(results, |k| *k == r.key, ["reaction", "top", c]);
@@ -112,7 +106,7 @@ fn run_random(seed: u64, count: usize, kind: &Kind) -> BTreeMap<String, usize> {
             Err(other) => panic!("no position: {other}\n{text}"),
         };
         accepted += 1;
-        for row in &results.runs {
+        for row in results.increments() {
             let gave_up = matches!(row.step.verdict, Verdict::GaveUp(_));
             assert!(
                 gave_up || row.step.verdict.is_honest(),
@@ -213,13 +207,17 @@ fn every_run_on_random_problems_is_counted_and_no_claim_is_false() {
         let results = run(&alone, &["b-newton", "penalty", "nitsche"]);
         assert_eq!(
             results
-                .runs
+                .increments()
                 .iter()
                 .filter(|row| row.key.increment == 0)
                 .count(),
             3
         );
-        for row in results.runs.iter().filter(|row| row.key.increment == 0) {
+        for row in results
+            .increments()
+            .iter()
+            .filter(|row| row.key.increment == 0)
+        {
             let own = |r: &&Record| {
                 r.asked.case == alone.name
                     && r.found.method == row.key.method

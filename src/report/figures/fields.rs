@@ -27,7 +27,7 @@ pub static CONTACT: Kind = Kind {
 ///
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
-pub fn add(bundle: &mut Bundle, fields: &RunFields) -> Result<(), ReportError> {
+pub fn add(bundle: &mut Bundle, fields: &RunFields<'_>) -> Result<(), ReportError> {
     let Some(step) = fields.steps.last() else {
         return Ok(());
     };

@@ -8,7 +8,8 @@ use crate::report::number::significant;
 use crate::report::plot::subscript;
 use crate::report::plot::{Axis, Draw, Figure, Panel, Series, italic, plain, prefixed, rank};
 use crate::report::{Bundle, ReportError};
-use crate::studies::rows::{QuantityRow, Results, RunKey};
+use crate::studies::results::Results;
+use crate::studies::rows::{QuantityRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What it is.
@@ -34,10 +35,11 @@ type Path = Vec<[f64; 2]>;
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
     // By problem and crack, then by method.
-    type Runs<'a> = BTreeMap<(usize, &'a str), Run<'a, QuantityRow>>;
+    type Runs<'a> = BTreeMap<(usize, &'a str), Run<'a, QuantityRow<'a>>>;
     let mut found: BTreeMap<(String, &str), Runs<'_>> = BTreeMap::new();
     let mut solids = BTreeSet::new();
-    for row in &results.quantities {
+    let quantities = results.quantities();
+    for row in &quantities {
         let (quantity, method) = (&row.quantity, &row.key.method);
         if !["mean_slip", "contact_force"].contains(&quantity.name.as_str()) {
             continue;
@@ -64,7 +66,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
         let longest = paths.iter().map(|(_, path)| path.len()).max().unwrap_or(0);
         paths.retain(|(_, path)| path.len() == longest);
         if longest > LEAST && runs_back(&paths[0].1) && !solids.contains(&name) {
-            let figure = figure(&paths, crack, results);
+            let figure = figure(&paths, crack, results, &quantities);
             KIND.add(bundle, &format!("{name}.{crack}"), figure.svg()?)?;
         }
     }
@@ -72,7 +74,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 }
 
 /// As far as both quantities are known.
-fn path(rows: &[&QuantityRow]) -> Path {
+fn path(rows: &[&QuantityRow<'_>]) -> Path {
     let mut values: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
     for row in rows {
         let place = values.entry(row.key.increment).or_insert([f64::NAN; 2]);
@@ -96,7 +98,12 @@ fn runs_back(path: &Path) -> bool {
     })
 }
 
-fn figure(paths: &[(&RunKey, Path)], crack: &str, results: &Results) -> Figure {
+fn figure(
+    paths: &[(&RunKey, Path)],
+    crack: &str,
+    results: &Results,
+    quantities: &[QuantityRow<'_>],
+) -> Figure {
     let all = || paths.iter().flat_map(|(_, path)| path);
     let largest = [0, 1].map(|c| all().map(|p| p[c].abs()).fold(f64::MIN_POSITIVE, f64::max));
     let scaled = |(_, path): &(_, Path)| -> Vec<f64> {
@@ -120,19 +127,19 @@ fn figure(paths: &[(&RunKey, Path)], crack: &str, results: &Results) -> Figure {
         panel.series.push(series);
     }
     let key = paths[0].0;
-    let title = dissipation(key, results).unwrap_or(found.title);
+    let title = dissipation(key, results, quantities).unwrap_or(found.title);
     let path = format!("increments 1 to {}", key.increment);
     let caption = format!("{}, {}, {path}", problem(key), crack.replace('-', " "));
     Figure::new(&title, &caption, 1, vec![panel])
 }
 
 /// What a run dissipates over the path, beside the closed form if the case states it.
-fn dissipation(key: &RunKey, results: &Results) -> Option<String> {
-    let own = |row: &&QuantityRow| {
-        let quantity = &row.quantity;
+fn dissipation(key: &RunKey, results: &Results, quantities: &[QuantityRow<'_>]) -> Option<String> {
+    let own = |row: &&QuantityRow<'_>| {
+        let quantity = row.quantity;
         row.key == *key && quantity.name == "dissipation" && quantity.at.is_empty()
     };
-    let quantity = &results.quantities.iter().find(own)?.quantity;
+    let quantity = quantities.iter().find(own)?.quantity;
     let found = significant(quantity.value, 4);
     let mut stated = results.expectations.iter().filter(|row| row.key == *key);
     let stated = stated

@@ -8,9 +8,9 @@ use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
 use crate::report::{Bundle, ReportError};
-use crate::studies::rows::{ExactRow, PointRow, Results, RunKey, RunRow};
+use crate::studies::results::Results;
+use crate::studies::rows::{ExactRow, IncrementRow, PointRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_methods::Tier;
 
 /// What it is.
 pub static KIND: Kind = Kind {
@@ -40,8 +40,8 @@ fn name(quantity: usize) -> String {
     }
 }
 
-fn found(row: &PointRow, quantity: usize) -> f64 {
-    let point = &row.point;
+fn found(row: &PointRow<'_>, quantity: usize) -> f64 {
+    let point = row.point;
     match quantity {
         0 => point.p_n / point.weight,
         1 => point.p_a.hypot(point.p_b) / point.weight,
@@ -60,15 +60,14 @@ fn closed(row: &ExactRow, quantity: usize) -> f64 {
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    let honest = results
-        .runs
-        .iter()
-        .filter(|row| row.step.verdict.is_honest());
+    let (increments, points) = (results.increments(), results.points());
+    let honest = increments.iter().filter(|row| row.step.verdict.is_honest());
     let honest: Vec<&RunKey> = honest.map(|row| &row.key).collect();
+    let sizes = (&results.exact[..], &increments[..]);
     // By body, crack and method.
-    type Sweeps<'a> = BTreeMap<(String, usize, usize, &'a str), Vec<Run<'a, PointRow>>>;
+    type Sweeps<'a> = BTreeMap<(String, usize, usize, &'a str), Vec<Run<'a, PointRow<'a>>>>;
     let mut sweeps: Sweeps<'_> = BTreeMap::new();
-    for (name, mut runs) in by_problem(&results.points, |row: &PointRow| &row.key) {
+    for (name, mut runs) in by_problem(&points, |row: &PointRow<'_>| &row.key) {
         runs.retain(|(key, _)| honest.contains(key));
         let points = runs.iter().flat_map(|(_, rows)| rows);
         let plane = points.filter(|row| row.point.force_unit == "N/m");
@@ -80,7 +79,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
                 rows.sort_by(|a, b| a.point.s_m.total_cmp(&b.point.s_m));
             }
             own.retain(|(_, rows)| !rows.is_empty());
-            let figure = Profile::new(&own, results, crack).by_method();
+            let figure = Profile::new(&own, sizes, crack).by_method();
             KIND.add(bundle, &format!("{name}.crack-{crack}"), figure.svg()?)?;
             for (key, rows) in own {
                 let body = file_name(&[&key.case, &key.mesh, &key.space]);
@@ -93,7 +92,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
     for ((body, crack, _, method), mut runs) in sweeps {
         if runs.len() > 1 && done.insert((body.clone(), crack)) {
             runs.sort_by(|a, b| a.0.friction.total_cmp(&b.0.friction));
-            let figure = Profile::new(&runs, results, crack).by_friction();
+            let figure = Profile::new(&runs, sizes, crack).by_friction();
             let name = format!("{body}.{}.crack-{crack}", file_name(&[method]));
             KIND.add(bundle, &name, figure.svg()?)?;
         }
@@ -103,7 +102,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 
 /// Runs on one crack.
 struct Profile<'a> {
-    runs: &'a [Run<'a, PointRow>],
+    runs: &'a [Run<'a, PointRow<'a>>],
     /// Closed forms by friction coefficient.
     exact: BTreeMap<u64, Vec<&'a ExactRow>>,
     crack: usize,
@@ -113,21 +112,21 @@ struct Profile<'a> {
     left: Vec<[f64; 2]>,
 }
 
-/// Tolerance × reference sizes of a run; nothing if they are not known.
-fn left_by_tolerance(row: &RunRow) -> [f64; 2] {
-    let tier: Option<Tier> = row.tier.parse().ok();
-    let tolerance = tier.map(Tier::tolerance).or_else(|| row.tier.parse().ok());
-    let left = [
-        row.step.judge.reference_force,
-        row.step.judge.reference_jump_m,
-    ];
-    left.map(|size| (tolerance.unwrap_or(0.0) * size).max(0.0))
+/// Tolerance × reference sizes of an increment.
+fn left_by_tolerance(row: &IncrementRow<'_>) -> [f64; 2] {
+    let judge = &row.step.judge;
+    let left = [judge.reference_force, judge.reference_jump_m];
+    left.map(|size| (row.record.asked.tolerance * size).max(0.0))
 }
 
 impl<'a> Profile<'a> {
-    fn new(runs: &'a [Run<'a, PointRow>], results: &'a Results, crack: usize) -> Self {
+    fn new(
+        runs: &'a [Run<'a, PointRow<'a>>],
+        (exact, increments): (&'a [ExactRow], &[IncrementRow<'_>]),
+        crack: usize,
+    ) -> Self {
         let mut curves: BTreeMap<u64, Vec<&ExactRow>> = BTreeMap::new();
-        for row in results.exact.iter().filter(|row| row.crack == crack) {
+        for row in exact.iter().filter(|row| row.crack == crack) {
             let of = (&row.case, row.friction, row.increment);
             let own = |(key, _): &Run<'_, _>| of == (&key.case, key.friction, key.increment);
             if runs.iter().any(own) {
@@ -146,7 +145,7 @@ impl<'a> Profile<'a> {
             round_off: ROUND_OFF * length,
             left: (runs.iter())
                 .map(|(key, _)| {
-                    let mut rows = results.runs.iter();
+                    let mut rows = increments.iter();
                     let own = rows.find(|row| row.key == **key);
                     own.map_or([0.0; 2], left_by_tolerance)
                 })
@@ -158,7 +157,7 @@ impl<'a> Profile<'a> {
     fn is_noise(&self, quantity: usize) -> bool {
         let jump = quantity >= 2;
         let mut exact = self.exact.values().flatten();
-        let small = |row: &PointRow, [force, gap]: [f64; 2]| match jump {
+        let small = |row: &PointRow<'_>, [force, gap]: [f64; 2]| match jump {
             true => found(row, quantity).abs() <= gap.max(self.round_off),
             false => found(row, quantity).abs() * row.point.weight <= force,
         };
@@ -193,7 +192,7 @@ impl<'a> Profile<'a> {
             .max(largest[3])
             .max(self.round_off.max(f64::MIN_POSITIVE));
         let scale = [traction, traction, jump, jump];
-        let values = |(_, rows): &Run<'_, PointRow>| -> Vec<f64> {
+        let values = |(_, rows): &Run<'_, PointRow<'_>>| -> Vec<f64> {
             let of = |q: usize| rows.iter().map(move |row| found(row, q) / scale[q]);
             (0..4).flat_map(of).collect()
         };
@@ -210,7 +209,7 @@ impl<'a> Profile<'a> {
     /// One method with several friction coefficients.
     fn by_friction(&self) -> Figure {
         let (factor, unit) = prefixed(self.largest(2), "m");
-        let told = |(key, rows): &Run<'_, PointRow>| {
+        let told = |(key, rows): &Run<'_, PointRow<'_>>| {
             let slips = rows.iter().map(|row| row.point.slip_a_m.abs());
             let slip = slips
                 .filter(|slip| *slip >= self.round_off)
@@ -263,17 +262,17 @@ impl<'a> Profile<'a> {
         for (index, (run, label, style)) in curves.iter().enumerate() {
             let (key, rows) = &self.runs[*run];
             if quantity == 1 && key.friction > 0.0 && (index == 0 || !band) {
-                let limit = |row: &PointRow| key.friction * found(row, 0).max(0.0);
+                let limit = |row: &PointRow<'_>| key.friction * found(row, 0).max(0.0);
                 let points = rows.iter().map(|row| [row.point.s_m, limit(row) * factor]);
                 let label = format!("slip limit {} {}", italic("μ"), name(0));
                 let series = Series::new(label, Style::limit(), points.collect());
                 panel.series.push(series);
             }
-            let value = |row: &PointRow| found(row, quantity) * factor;
+            let value = |row: &PointRow<'_>| found(row, quantity) * factor;
             let points = rows.iter().map(|row| [row.point.s_m, value(row)]);
             let mut series = Series::new(label, style.clone(), points.collect());
             // Marks that would lie on those of the first curve are left out, so that both can be seen.
-            let hidden = |n: usize, row: &PointRow| {
+            let hidden = |n: usize, row: &PointRow<'_>| {
                 let below = first.get(n).filter(|_| index > 0 && band);
                 below.is_some_and(|b| {
                     let near = (value(b) - value(row)).abs() < VISIBLE * largest * factor;

@@ -4,8 +4,8 @@ use super::kind::Kind;
 use super::runs::{Run, by_problem, counted, distinct, problem};
 use crate::report::plot::{Axis, Figure, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
-use crate::studies::rows::{HistoryRow, Results, RunRow};
-use stickslip_methods::Tier;
+use crate::studies::results::Results;
+use crate::studies::rows::{HistoryRow, IncrementRow};
 
 /// What it is.
 pub static KIND: Kind = Kind {
@@ -23,16 +23,17 @@ const SHOWN: f64 = 1e-16;
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
-    for (name, runs) in by_problem(&results.history, |row: &HistoryRow| &row.key) {
-        let own = |row: &&RunRow| runs.iter().any(|(key, _)| **key == row.key);
-        let found: Vec<&RunRow> = results.runs.iter().filter(own).collect();
+    let (history, increments) = (results.history(), results.increments());
+    for (name, runs) in by_problem(&history, |row: &HistoryRow| &row.key) {
+        let own = |row: &&IncrementRow<'_>| runs.iter().any(|(key, _)| **key == row.key);
+        let found: Vec<&IncrementRow<'_>> = increments.iter().filter(own).collect();
         KIND.add(bundle, &name, figure(&runs, &found).svg()?)?;
     }
     Ok(())
 }
 
 /// The figure of one problem; `found`: what became of its runs.
-fn figure(runs: &[Run<'_, HistoryRow>], found: &[&RunRow]) -> Figure {
+fn figure(runs: &[Run<'_, HistoryRow>], found: &[&IncrementRow<'_>]) -> Figure {
     let mut solved = found.to_vec();
     solved.retain(|row| row.step.verdict.is_solved());
     solved.sort_by_key(|row| row.step.iterations);
@@ -65,11 +66,10 @@ fn figure(runs: &[Run<'_, HistoryRow>], found: &[&RunRow]) -> Figure {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         panel.series.push(Series::new(label, style, points));
     }
-    let tiers = distinct(found.iter().map(|row| row.tier.as_str()));
-    let asked = |tier: &Tier| tiers == [tier.to_string().as_str()];
-    if let Some(tier) = Tier::ALL.into_iter().find(asked) {
-        panel.levels.push(tier.tolerance());
-        caption += &format!("; tolerance {:e}", tier.tolerance());
+    let asked = found.iter().map(|row| row.record.asked.tolerance);
+    if let [tolerance] = distinct(asked)[..] {
+        panel.levels.push(tolerance);
+        caption += &format!("; tolerance {tolerance:e}");
     }
     Figure::new(&title, &caption, 1, vec![panel])
 }

@@ -19,14 +19,6 @@ pub static TIME: Kind = Kind {
             run from the mesh to the contact forces; medians over the bodies of a size, right answers at tier high alone.",
 };
 
-/// Iterations.
-pub static ITERATIONS: Kind = Kind {
-    file: "scaling.iterations.svg",
-    question: "Do iterations grow with the mesh, and with friction?",
-    shows: "Iterations of the methods against the number of contact unknowns, and against the friction coefficient on \
-            bodies of one size; medians over the bodies, right answers at tier high alone.",
-};
-
 /// Methods by class.
 pub static CLASSES: Kind = Kind {
     file: "scaling.classes.svg",
@@ -35,7 +27,7 @@ pub static CLASSES: Kind = Kind {
             solves at tier high, below it how many these are; –: none.",
 };
 
-/// All three; `caveat`: what captions say of a sweep that is not complete.
+/// Both; `caveat`: what captions say of a sweep that is not complete.
 ///
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
@@ -50,25 +42,15 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
         .filter(|s| s.friction == common)
         .collect();
     let fastest = winners(&own);
-    let caption = |what: &str| {
-        format!("{what}; medians over bodies of one size, right answers at tier high{caveat}")
-    };
-    if own.iter().any(|s| s.time.is_finite()) {
-        let figure = time(
-            &own,
-            &fastest,
-            &caption("bodies with cracks all over or right through, N contact unknowns"),
-        );
-        TIME.add(bundle, "", figure.svg()?)?;
-        CLASSES.add(bundle, "", classes(&own, &fastest, caveat).svg()?)?;
+    if !own.iter().any(|s| s.time.is_finite()) {
+        return Ok(());
     }
-    let figure = iterations(
-        &all,
-        &own,
-        &fastest,
-        &caption("the same bodies; right: one size"),
+    let caption = format!(
+        "bodies with cracks all over or right through, N contact unknowns; medians over bodies of one size, right answers at \
+         tier high{caveat}"
     );
-    ITERATIONS.add(bundle, "", figure.svg()?)
+    TIME.add(bundle, "", time(&own, &fastest, &caption).svg()?)?;
+    CLASSES.add(bundle, "", classes(&own, &fastest, caveat).svg()?)
 }
 
 /// Dimensions there are samples of.
@@ -77,26 +59,19 @@ fn dimensions(all: &[Sample<'_>]) -> Vec<usize> {
     [2, 3].into_iter().filter(some).collect()
 }
 
-/// A panel with a curve for every method.
-fn panel<'s>(
-    own: &[&'s Sample<'s>],
-    further: &[&str],
-    axes: [Axis; 2],
-    same: fn(&Sample<'_>) -> f64,
-    [x, y]: [Quantity; 2],
-) -> Panel {
-    let [horizontal, vertical] = axes;
+/// A panel over the contact unknowns with a curve for every method.
+fn panel(own: &[&Sample<'_>], further: &[&str], vertical: Axis, quantity: Quantity) -> Panel {
+    let horizontal = Axis::log("contact unknowns [-]");
     let mut panel = Panel::new(horizontal, vertical, 55.0);
     let groups: Vec<&[&Sample]> = own.chunk_by(|a, b| a.method == b.method).collect();
     let names: Vec<&str> = groups.iter().map(|group| group[0].method).collect();
     for (group, (label, style)) in groups.iter().zip(looks(&names, further)) {
-        let points = medians(group.iter().copied(), same, x, y);
+        let size: Quantity = |s| s.points as f64;
+        let points = medians(group.iter().copied(), size, |s| s.unknowns, quantity);
         panel.series.push(Series::new(label, style, points));
     }
     panel
 }
-
-const UNKNOWNS: Quantity = |s| s.unknowns;
 
 fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
     let seconds: Quantity = |s| s.time;
@@ -105,19 +80,9 @@ fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
     for dim in dimensions(all) {
         let own: Vec<&Sample> = all.iter().filter(|s| s.dim == dim).collect();
         let whole = Axis::log("part in the whole run [%]").through(&[100.0]);
-        let panel_of = |axis: Axis, quantity: Quantity| {
-            let axes = [Axis::log("contact unknowns [-]"), axis];
-            let grown = panel(
-                &own,
-                fastest,
-                axes,
-                |s| s.points as f64,
-                [UNKNOWNS, quantity],
-            );
-            Panel {
-                heading: format!("{dim}D"),
-                ..grown
-            }
+        let panel_of = |axis: Axis, quantity: Quantity| Panel {
+            heading: format!("{dim}D"),
+            ..panel(&own, fastest, axis, quantity)
         };
         let mut times = panel_of(Axis::log("time of the method [s]"), seconds);
         times.guides = vec![Guide::new(2.0, 1.0, "")];
@@ -152,75 +117,6 @@ fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
     Some(format!(
         "{name} on {largest} points in {dim}D ({seconds} s{grows})"
     ))
-}
-
-fn iterations(
-    all: &[Sample<'_>],
-    common: &[Sample<'_>],
-    fastest: &[&str],
-    caption: &str,
-) -> Figure {
-    let mut panels = Vec::new();
-    for dim in dimensions(all) {
-        let of_sizes: Vec<&Sample> = common.iter().filter(|s| s.dim == dim).collect();
-        let axes = || {
-            [
-                Axis::log("contact unknowns [-]"),
-                Axis::log("iterations [-]"),
-            ]
-        };
-        let grown = panel(
-            &of_sizes,
-            fastest,
-            axes(),
-            |s| s.points as f64,
-            [UNKNOWNS, |s| s.iterations],
-        );
-        panels.push(Panel {
-            heading: format!("{dim}D"),
-            ..grown
-        });
-        // The size that was given most friction coefficients.
-        let sizes = distinct(all.iter().filter(|s| s.dim == dim).map(|s| s.points));
-        let many = |points: &usize| {
-            let own = all.iter().filter(|s| s.dim == dim && s.points == *points);
-            distinct(own.map(|s| s.friction)).len()
-        };
-        let Some(points) = sizes.into_iter().max_by_key(many).filter(|p| many(p) > 1) else {
-            continue;
-        };
-        let fits = |s: &&Sample| s.dim == dim && s.points == points;
-        let of_friction: Vec<&Sample> = all.iter().filter(fits).collect();
-        let axes = [
-            Axis::log("friction coefficient [-]"),
-            Axis::log("iterations [-]"),
-        ];
-        let own = panel(
-            &of_friction,
-            fastest,
-            axes,
-            |s| s.friction,
-            [|s| s.friction, |s| s.iterations],
-        );
-        panels.push(Panel {
-            heading: format!("{dim}D, about {points} points"),
-            ..own
-        });
-    }
-    let names = distinct(common.iter().map(|s| s.method));
-    let steady = names.into_iter().filter(|name| {
-        let own = common.iter().filter(|s| s.method == *name);
-        exponent(own, |s| s.iterations).is_some_and(|b| b < 0.1)
-    });
-    let steady: Vec<String> = steady.map(plain).collect();
-    let title = match steady.is_empty() {
-        true => "Iterations of every method grow with the mesh".to_owned(),
-        false => format!(
-            "Iterations hardly grow with the mesh for {}",
-            steady.join(", ")
-        ),
-    };
-    Figure::new(&title, caption, 2, panels)
 }
 
 /// Ratio with the full tint.

@@ -10,7 +10,7 @@ use base64::engine::general_purpose::STANDARD;
 use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
 use crate::report::Bundle;
-use crate::report::figures::{Kind, fastest, success, work_precision};
+use crate::report::figures::{Kind, performance, success, work_precision};
 
 /// A link to a file.
 pub struct Link {
@@ -32,7 +32,7 @@ const KINDS: [&str; 5] = ["csv", "md", "tex", "svg", "toml"];
 const SKIPPED: [&str; 1] = ["fields"];
 
 /// Kinds of figures that open the page, one of each.
-const HEADLINES: [&Kind; 3] = [&fastest::KIND, &work_precision::KIND, &success::KIND];
+const HEADLINES: [&Kind; 3] = [&performance::KIND, &work_precision::KIND, &success::KIND];
 
 /// A report folder.
 #[derive(Debug)]

@@ -125,10 +125,7 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
             found.count().to_string()
         };
         let solved = count(|v| v.kind() == VerdictKind::Solved);
-        let label = format!(
-            "solved, of {} increments: the contact laws hold",
-            verdicts.len()
-        );
+        let label = format!("solved, of {} runs: the contact laws hold", verdicts.len());
         fact(solved, label, section);
         let own = count(|v| v.kind() == VerdictKind::Approximate);
         fact(own, "approximate: own laws solved".into(), section);

@@ -1,4 +1,4 @@
-//! What is known of a table without its rows: for `docs/schema.md` and for the page, which reads files.
+//! What is known of a table without its rows: for `stickslip show schema` and for the page, which reads files.
 
 use super::readable::escape_markdown;
 use super::{About, Pivot, Row};
@@ -41,7 +41,7 @@ impl Description {
         format!("{}.csv", self.name)
     }
 
-    /// Its chapter of `docs/schema.md`.
+    /// Its chapter of `stickslip show schema`.
     pub fn chapter(&self) -> String {
         let mut text = format!(
             "### `{}`\n\n*{}*\n\n{}.",

@@ -5,9 +5,8 @@ use std::cmp::Ordering;
 use super::words::*;
 use crate::report::table::{Column, Order, Pivot, Row, columns};
 use crate::run::verdict::Verdict;
-use crate::studies::paper::as_printed;
 use crate::studies::paper::comparison::ComparisonRow;
-use crate::studies::paper::converged_reactions::{ConvergedRow, SequenceRow};
+use crate::studies::paper::converged_reactions::ConvergedRow;
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
 
@@ -105,7 +104,7 @@ impl Row for ConvergedRow {
     const NAME: &'static str = "converged";
     const TITLE: &'static str = "Converged reactions of the plate with error bars, beside Table 1";
     const QUESTION: &'static str = "What is the reaction of the plate, whatever the mesh, and how far off is the printed number?";
-    const NOTES: &'static str = "`edge-pairs` with enriched tip cells are the paper's own discretisation. With `--full` also `star` multipliers with branch functions within 1.5 m of the tips, on three meshes, which the corners of the plate alone keep from converging.";
+    const NOTES: &'static str = "`edge-pairs` with enriched tip cells are the paper's own discretisation. With `--full` also `star` multipliers with branch functions within 1.5 m of the tips, on three meshes, which the corners of the plate alone keep from converging. The meshes one by one: `convergence.csv`.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -118,33 +117,6 @@ impl Row for ConvergedRow {
             "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m(), "its uncertainty, as `error_bar` in `convergence.csv`";
             "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "reaction that Table 1 prints for this mesh; empty where it has none";
             "printed_difference" "–" .significant(3).named("printed − reaction").percent(2) = r.printed_difference(), "printed / reaction − 1";
-        }
-    }
-}
-
-impl Row for SequenceRow {
-    const NAME: &'static str = "refinement";
-    const TITLE: &'static str = "Plate under refinement: vertical reaction at the top";
-    const QUESTION: &'static str = "How far are the paper's meshes from convergence?";
-    const ORDER: Order<Self> = Order::By(|a, b| {
-        let [one, other] = [&a.found, &b.found];
-        (one.variant.friction.total_cmp(&other.variant.friction))
-            .then_with(|| (&one.variant.space, a.mesh).cmp(&(&other.variant.space, b.mesh)))
-            .then(other.h.total_cmp(&one.h))
-    });
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "space" "" .shown() = r.found.variant.space.clone(), SPACE;
-            "mesh" "" .shown() = r.mesh, "as in `converged.csv`";
-            "cells" "" .shown() = r.found.mesh.clone(), MESH;
-            "h_m" "m" .fixed(4) = r.found.h, CELL_WIDTH;
-            "friction" "–" .shown() = r.found.variant.friction, FRICTION;
-            "dofs" "" .named("unknowns") = r.found.dofs, DOFS;
-            "points" "" .shown() = r.found.points, POINTS;
-            "reaction_mn_per_m" "MN/m" .fixed(3) = as_printed(r.found.found), "reaction at the top; `NaN` where the run is not solved";
-            "order" "–" .significant(3).fixed(2) = r.found.order, "observed order in h over this mesh and the two before; `NaN` where there are none";
-            "verdict" "" .shown() = &r.found.verdict, VERDICT;
         }
     }
 }

@@ -203,14 +203,14 @@ impl Row for PointRow<'_> {
             "swept" "" = r.swept.name(), "`tolerance`, or the option that takes most values and those that follow from it";
             "value" "–" = r.point.value, "tolerance, or value of the option; the defaults stand among them";
             "exact" "" = r.exact, "whether the limit of the method are the contact laws";
-            "id" "" = r.point.record.id.clone(), "as in `cells.csv`, like the five that follow";
+            "id" "" = r.point.record.id.clone(), "as in `runs.csv`, like the five that follow";
             "verdict" "" = &r.point.record.found.verdict, "verdict";
             "error_energy" "–" .residual() = r.point.error, "solver error in the energy norm";
             "iterations" "" = r.sum(|i| i.iterations), ITERATIONS;
             "local_solves" "" = r.sum(|i| i.local_solves), LOCALS;
             "tangent_factorisations" "" = r.sum(|i| i.tangent_factorisations), TANGENTS;
-            "method_median_s" "s" .time() = r.time(|t| t.median_s), "as in `times.csv`, like the two that follow";
-            "method_low_s" "s" .time() = r.time(|t| t.low_s), "lower end";
+            "method_median_s" "s" .time() = r.time(|t| t.median_s), "time of the method: preparation and enforcement, sum of the two medians";
+            "method_low_s" "s" .time() = r.time(|t| t.low_s), "sum of the lower ends of their 95 % intervals";
             "method_high_s" "s" .time() = r.time(|t| t.high_s), "upper end";
         }
     }

@@ -1,66 +1,206 @@
-//! What runs find: verdicts, quantities, histories, contact points, expected numbers.
+//! Runs, their increments, and what they know of errors.
+
+use std::cmp::Ordering;
 
 use super::words::*;
+use crate::model::errors::Deviation;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::rows::{
-    ExactRow, ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, QuantityRow, RunKey,
-    RunRow,
-};
+use crate::studies::analysis::accuracy::sequences;
+use crate::studies::analysis::{compare_methods, compare_problems, published_times};
+use crate::studies::followed::Value;
+use crate::studies::record::{ProblemSize, Record, SolverError, Spent, Step};
+use crate::studies::rows::IncrementRow;
+use crate::studies::statistics::larger;
+use crate::studies::task::Problem;
 
-/// A row about one increment of one run.
-trait OfRun {
-    fn key(&self) -> &RunKey;
+/// A row about a run.
+trait OfRecord {
+    fn record(&self) -> &Record;
 }
 
-macro_rules! of_run {
-    ($($row:ty),*) => { $(impl OfRun for $row {
-        fn key(&self) -> &RunKey {
-            &self.key
-        }
-    })* };
-}
-of_run!(RunRow, QuantityRow, HistoryRow, PointRow, ExpectRow);
-
-/// The columns of a run's key, then those of the row.
-fn keyed<R: OfRun>(own: Vec<Column<R>>) -> Vec<Column<R>> {
+/// The columns that name a run, then those of the row.
+fn of_record<R: OfRecord>(own: Vec<Column<R>>) -> Vec<Column<R>> {
     let mut columns = columns! { r: R,
-        "case" "" .key() = r.key().case.clone(), CASE;
-        "mesh" "" .key() = r.key().mesh.clone(), MESH;
-        "space" "" .key() = r.key().space.clone(), SPACE;
-        "method" "" .key() = r.key().method.clone(), METHOD;
-        "friction" "–" .key().named("μ") = r.key().friction, FRICTION;
-        "increment" "" .key() = r.key().increment, INCREMENT;
+        "id" "" = r.record().id.clone(), "stable name of the run; joins the files of a study";
+        "case" "" .shown() = r.record().asked.case.clone(), "case: a shipped one, a file, or a random problem";
+        "refine" "" = r.record().asked.refine, "refinement factor of the mesh";
+        "mesh" "" .shown() = size(r.record()).map_or("", |size| &size.mesh), "mesh label; empty where the run ended before it had a mesh";
+        "space" "" .shown() = size(r.record()).map_or(r.record().asked.space.as_deref().unwrap_or("own"), |size| &size.space), SPACE;
+        "friction" "–" .named("μ") = r.record().asked.mu(), FRICTION;
+        "parts" "" = r.record().asked.increments, "equal increments that each of the case's is divided in";
+        "start" "" = if r.record().asked.cold { "cold" } else { "warm" }, "where methods begin an increment: from the contact forces at the end of the last one (`warm`), or from none (`cold`)";
+        "method" "" .shown() = r.record().found.method.clone(), METHOD;
+        "tolerance" "–" .shown() = r.record().asked.tolerance, "violation of the contact laws asked of the method and accepted by the judge";
     };
     columns.extend(own);
     columns
 }
 
-impl Row for RunRow {
+fn size(record: &Record) -> Option<&ProblemSize> {
+    record.found.problem.as_ref()
+}
+
+/// Order of runs: problem, method, tolerance from coarse to fine.
+pub fn compare_runs(a: &Record, b: &Record) -> Ordering {
+    compare_problems(&a.asked, &b.asked)
+        .then_with(|| compare_methods(&a.found.method, &b.found.method))
+        .then(b.asked.tolerance.total_cmp(&a.asked.tolerance))
+        .then_with(|| a.id.cmp(&b.id))
+}
+
+const STATE_CHANGES: &str =
+    "changes of a point between open, stick and slip from iterate to iterate, summed";
+const FINAL_CHANGES: &str =
+    "points that end an increment in another state than the one they began it in";
+
+/// A run.
+pub struct RunRow<'a>(pub &'a Record);
+
+impl OfRecord for RunRow<'_> {
+    fn record(&self) -> &Record {
+        self.0
+    }
+}
+
+impl RunRow<'_> {
+    fn error(&self, of: fn(&SolverError) -> f64) -> f64 {
+        self.0.found.solver_error.as_ref().map_or(f64::NAN, of)
+    }
+
+    fn sum(&self, counter: fn(&Step) -> usize) -> usize {
+        self.0.found.sum(counter)
+    }
+
+    /// The largest over the increments; not-a-number where there is none.
+    fn largest(&self, of: fn(&Step) -> f64) -> f64 {
+        let all = self.0.found.increments.iter().map(of);
+        all.reduce(larger).unwrap_or(f64::NAN)
+    }
+
+    fn discretisation_error(&self) -> Option<f64> {
+        let energy = |d: &&Deviation| d.quantity == "energy" && d.at.is_empty();
+        self.0.found.deviations.iter().find(energy).map(|d| d.error)
+    }
+
+    /// A size of the problem; not-a-number where there is none.
+    fn size(&self, of: fn(&ProblemSize) -> usize) -> f64 {
+        size(self.0).map_or(f64::NAN, |size| of(size) as f64)
+    }
+
+    /// A time, if it may be shown.
+    fn time(&self, of: fn(&Spent) -> f64) -> f64 {
+        published_times(self.0).map_or(f64::NAN, of)
+    }
+}
+
+/// All stages [s].
+fn total(spent: &Spent) -> f64 {
+    let Spent {
+        setup_s,
+        assembly_s,
+        factorisation_s,
+        condensation_s,
+        ..
+    } = spent;
+    let method = spent.prepare.median_s + spent.solve.median_s;
+    // Only studies time the output.
+    let output = Some(spent.output_s).filter(|own| own.is_finite());
+    setup_s + assembly_s + factorisation_s + condensation_s + method + output.unwrap_or(0.0)
+}
+
+const LOW: &str =
+    "lower end of the 95 % interval of the median; of fewer than six repetitions the least";
+
+impl Row for RunRow<'_> {
     const NAME: &'static str = "runs";
-    const TITLE: &'static str = "Runs: one row per increment";
-    const QUESTION: &'static str = "Which run solved its problem, how exactly, and at what cost?";
-    const NOTES: &'static str = "Times stand beside honest verdicts only, of runs that had the machine to themselves (`--jobs 1`).";
+    const TITLE: &'static str = "Runs";
+    const QUESTION: &'static str =
+        "Which run is right, how exact is it, after how much work, in what time?";
+    const NOTES: &'static str = "A row for a problem, a method and an accuracy; counters are sums over the increments of the path, violations and errors the largest of them. Times stand beside honest verdicts only, of runs that had the machine to themselves; they are medians of the repetitions.";
     const READABLE: bool = false;
+    const ORDER: Order<Self> = Order::By(|a, b| compare_runs(a.0, b.0));
 
     fn columns() -> Vec<Column<Self>> {
-        keyed(columns! { r: Self,
-            "tier" "" .key() = r.tier.clone(), TIER;
+        of_record(columns! { r: Self,
+            "digest" "" = r.0.asked.digest.clone(), "SHA-256 of the case file, 16 digits";
+            "exact" "" = r.0.found.exact, "whether the limit of the method are the contact laws";
+            "verdict" "" .shown() = &r.0.found.verdict, VERDICT;
+            "cause" "" = r.0.found.cause(), "why it gave up, where that was asked: as in `why.csv`";
+            "natural_map" "–" .residual().power(2) = r.largest(|i| i.judge.natural_map), NATURAL_MAP;
+            "violation" "–" .residual() = r.largest(|i| i.judge.violation), "largest violation of the contact laws: what tiers and verdicts refer to";
+            "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.largest(|i| i.overlap_m), "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
+            "error_energy" "–" .residual() = r.error(|e| e.energy), "solver error: distance of u from the converged solution of the same discrete problem in the energy norm, relative; the largest over the increments, like the two that follow";
+            "error_force" "–" .residual() = r.error(|e| e.force), "that of the contact forces";
+            "error_jump" "–" .residual() = r.error(|e| e.jump), "largest difference of a jump, over the largest displacement";
+            "reference" "" = r.0.found.solver_error.as_ref().map_or("", |e| &e.reference), "method that found the converged solution";
+            "reference_natural_map" "–" .residual() = r.error(|e| e.reference_natural_map), "its residual";
+            "discretisation_error" "–" .significant(4) = r.discretisation_error().unwrap_or(f64::NAN), "error in the energy norm against the closed form, at the end of the path; `NaN` where the case has none";
+            "dim" "" = r.size(|size| size.dim), DIMENSION;
+            "dofs" "" = r.size(|size| size.dofs), DOFS;
+            "points" "" .shown() = r.size(|size| size.points), POINTS;
+            "unknowns" "" = r.size(|size| size.unknowns), "contact unknowns";
+            "h_m" "m" = size(r.0).map_or(f64::NAN, |size| size.h_m), CELL_WIDTH;
+            "uniform_stress" "–" .residual() = size(r.0).map_or(f64::NAN, |size| size.uniform_stress), "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
+            "increments" "" .shown() = r.0.found.increments.len(), "increments that were run; the seven counters that follow are their sums";
+            "iterations" "" .shown() = r.sum(|i| i.iterations), ITERATIONS;
+            "solves" "" = r.sum(|i| i.solves), SOLVES;
+            "tangent_factorisations" "" .named("dense factorisations") = r.sum(|i| i.tangent_factorisations), TANGENTS;
+            "global_factorisations" "" = r.sum(|i| i.global_factorisations), GLOBALS;
+            "local_solves" "" = r.sum(|i| i.local_solves), LOCALS;
+            "state_changes" "" = r.sum(|i| i.state_changes), STATE_CHANGES;
+            "final_changes" "" = r.sum(|i| i.final_changes), FINAL_CHANGES;
+            "setup_s" "s" .time() = r.time(|s| s.setup_s), SETUP_S;
+            "assembly_s" "s" .time() = r.time(|s| s.assembly_s), ASSEMBLY_S;
+            "factorisation_s" "s" .time() = r.time(|s| s.factorisation_s), FACTORISATION_S;
+            "condensation_s" "s" .time() = r.time(|s| s.condensation_s), CONDENSATION_S;
+            "prepare_s" "s" .time() = r.time(|s| s.prepare.median_s), PREPARE_S;
+            "solve_s" "s" .time().digits(3) = r.time(|s| s.solve.median_s), "solution of all increments";
+            "solve_least_s" "s" .time() = r.time(|s| s.solve.min_s), "least of the repetitions";
+            "enforcement_s" "s" .time().digits(3) = r.time(|s| s.enforcement.median_s), ENFORCEMENT_S;
+            "enforcement_least_s" "s" .time() = r.time(|s| s.enforcement.min_s), "least of the repetitions";
+            "enforcement_low_s" "s" .time() = r.time(|s| s.enforcement.low_s), LOW;
+            "enforcement_high_s" "s" .time() = r.time(|s| s.enforcement.high_s), "upper end";
+            "repetitions" "" = published_times(r.0).map_or(f64::NAN, |s| s.enforcement.samples as f64), "repetitions that times are medians of";
+            "reported_s" "s" .time() = r.time(|s| s.reported.map_or(f64::NAN, |own| own.median_s)), REPORTED_S;
+            "output_s" "s" .time() = r.time(|s| s.output_s), "tables and fields of the last increment, in memory; `NaN` where that was not timed";
+            "total_s" "s" .time() = r.time(total), "all stages";
+            "peak_mb" "MB" .significant(4) = r.time(|s| s.peak_mb.unwrap_or(f64::NAN)), "largest resident memory of the process; `NaN` where the system does not tell";
+        })
+    }
+
+    fn is_honest(&self) -> bool {
+        self.0.found.verdict.is_honest()
+    }
+}
+
+impl OfRecord for IncrementRow<'_> {
+    fn record(&self) -> &Record {
+        self.record
+    }
+}
+
+impl Row for IncrementRow<'_> {
+    const NAME: &'static str = "increments";
+    const TITLE: &'static str = "What every increment of every run found";
+    const QUESTION: &'static str =
+        "Which increment of a path is right, how exactly, after how much work?";
+    const READABLE: bool = false;
+    const ORDER: Order<Self> = Order::By(|a, b| {
+        compare_runs(a.record, b.record).then(a.step.increment.cmp(&b.step.increment))
+    });
+
+    fn columns() -> Vec<Column<Self>> {
+        of_record(columns! { r: Self,
+            "increment" "" .shown() = r.step.increment, INCREMENT;
             "verdict" "" .shown() = &r.step.verdict, VERDICT;
-            "natural_map" "–" .residual().power(2) = r.step.judge.natural_map, NATURAL_MAP;
+            "natural_map" "–" .residual() = r.step.judge.natural_map, NATURAL_MAP;
             "iterations" "" .shown() = r.step.iterations, ITERATIONS;
-            "factorisations" "" = r.factorisations, "factorisations of K for this mesh up to this row, shared by all methods, friction values and increments";
-            "solves" "" .shown() = r.step.solves, "solves with the factor of K in this increment";
-            "unknowns" "" = r.size.unknowns, "contact unknowns";
-            "points" "" .shown() = r.size.points, POINTS;
-            "dofs" "" = r.size.dofs, DOFS;
-            "setup_s" "s" .time() = r.setup_s, SETUP_S;
-            "assembly_s" "s" .time() = r.assembly_s, ASSEMBLY_S;
-            "factorisation_s" "s" .time() = r.factorisation_s, FACTORISATION_S;
-            "condensation_s" "s" .time() = r.condensation_s, CONDENSATION_S;
-            "prepare_s" "s" .time() = r.prepare_s, PREPARE_S;
-            "solve_s" "s" .time().digits(3) = r.solve_s, "solution of this increment";
-            "enforcement_s" "s" .time().digits(3) = r.enforcement_s, ENFORCEMENT_S;
-            "reported_s" "s" .time() = r.reported_s, REPORTED_S;
+            "solves" "" = r.step.solves, SOLVES;
+            "tangent_factorisations" "" = r.step.tangent_factorisations, TANGENTS;
+            "global_factorisations" "" = r.step.global_factorisations, GLOBALS;
+            "local_solves" "" = r.step.local_solves, LOCALS;
+            "state_changes" "" = r.step.state_changes, STATE_CHANGES;
+            "final_changes" "" = r.step.final_changes, FINAL_CHANGES;
             "equilibrium" "–" .residual() = r.step.judge.equilibrium, "backward error of equilibrium, found by the judge";
             "claimed_equilibrium" "–" .residual() = r.step.judge.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
             "claimed" "–" .residual() = r.step.judge.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";
@@ -70,182 +210,83 @@ impl Row for RunRow {
             "complementarity" "–" .residual() = r.step.judge.complementarity, "largest product of gap and pressure at a contact point relative to u_ref and the larger of P_ref and its pressure, found by the judge";
             "cone" "–" .residual() = r.step.judge.cone, "largest excess over the friction bound at a contact point relative to P_ref, found by the judge";
             "sway" "–" .significant(2) = r.step.judge.sway, "trace of W over Σ |B_i|² / max K_jj, a measure of condition: how far contact forces move the body beside what they press into its stiffest unknowns; 0 where no point closes. Above 1e7 the mesh is suspect";
-            "uniform_stress" "–" .residual() = r.size.uniform_stress, "residual of uniform stress states on the mesh, in the energy norm of a cell, found by the judge of the mesh: 0 but for rounding";
-            "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.step.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
+            "overlap_m" "m" .significant(2) = r.step.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
             "reference_force" "N or N/m" = r.step.judge.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or as those at the start of the increment if that is more; 0 where no point closes";
             "reference_jump_m" "m" = r.step.judge.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
-            "tangent_factorisations" "–" .named("dense factorisations") = r.step.tangent_factorisations, TANGENTS;
-            "global_factorisations" "–" = r.step.global_factorisations, GLOBALS;
-            "local_solves" "–" = r.step.local_solves, LOCALS;
-        })
-    }
-
-    fn is_honest(&self) -> bool {
-        self.step.verdict.is_honest()
-    }
-}
-
-impl Row for QuantityRow {
-    const NAME: &'static str = "quantities";
-    const TITLE: &'static str = "Quantities of interest at the end of every increment";
-    const QUESTION: &'static str =
-        "What does the body do: reactions, displacements, slip, dissipation?";
-    const READABLE: bool = false;
-
-    fn columns() -> Vec<Column<Self>> {
-        keyed(columns! { r: Self,
-            "quantity" "" .key() = r.quantity.name.clone(), "`reaction`, `displacement`, `contact_force`, `points_open`, `points_stick`, `points_slip`, `max_gap`, `max_penetration`, `max_slip` (over the contact points), `mean_slip` (tangential jump of a crack along `a` and, in 3D, `b`, mean over its surface), `max_penetration_sampled` (deepest overlap of the faces at 10 places along every 2D facet, at 19 or more on every 3D facet, ends and corners included; at the points of a crack along cell facets, where the jump is linear between them), `dissipation` (work of friction since time 0, of all cracks and of each), `strain_energy` (of the strain, without the initial stress), `external_work` (of supports and loads since time 0), `initial_stress_work` (likewise), `path_error` (difference of the work that the faces take by the trapezoid of all components from `dissipation`, relative to it; falls as increments are added), `energy_identity` (check of equilibrium: relative residual of the energy identity of the increment)";
-            "at" "" .key() = r.quantity.at.clone(), AT;
-            "component" "" .key() = r.quantity.component.clone(), COMPONENT;
-            "value" "`unit`" .digits(6) = r.quantity.value, "value";
-            "unit" "" .shown() = r.quantity.unit.clone(), "unit of the value";
         })
     }
 }
 
-impl Row for HistoryRow {
-    const NAME: &'static str = "history";
-    const TITLE: &'static str = "Violation of the contact laws by the iterates";
-    const QUESTION: &'static str = "How does a method converge?";
-    const NOTES: &'static str = "All iterations up to 100, then about 50 per decade, always the last. The numbers of the iterations recorded depend on the number of the last one only.";
-    const READABLE: bool = false;
+/// Kind of a quantity beside its closed form.
+const EXACT: &str = "exact";
 
-    fn columns() -> Vec<Column<Self>> {
-        keyed(columns! { r: Self,
-            "iteration" "" .key() = r.iteration, "iteration, 0 is the start";
-            "violation" "–" .residual().power(2) = r.violation, "largest of natural map, penetration, adhesion, complementarity and cone of the iterate, as in `runs.csv`; of an approximate method too, where it ends at the modelling error";
-        })
-    }
+/// A quantity of a run, beside its closed form or followed over meshes.
+pub struct DeviationRow<'a> {
+    record: &'a Record,
+    quantity: Result<&'a Deviation, &'a Value>,
 }
 
-impl Row for PointRow {
-    const NAME: &'static str = "points";
-    const TITLE: &'static str = "Contact points at the end of every increment";
-    const QUESTION: &'static str =
-        "Where along a crack does it open, stick and slip, and under which forces?";
-    const READABLE: bool = false;
-
-    fn columns() -> Vec<Column<Self>> {
-        keyed(columns! { r: Self,
-            "crack" "" .key() = r.point.crack, "number of the crack, from 1";
-            "point" "" .key() = r.point.number, "number of the point within the crack, from 1, ordered along it";
-            "x_m" "m" .digits(5) = r.point.x_m, "position";
-            "y_m" "m" .digits(5) = r.point.y_m, "position";
-            "z_m" "m" .digits(5) = r.point.z_m, "position, 0 in 2D";
-            "s_m" "m" = r.point.s_m, "distance along the crack from its first point; 0 in 3D";
-            "weight" "m or m²" = r.point.weight, "tributary length (2D) or area (3D)";
-            "gap_m" "m" .digits(4) = r.point.gap_m, "normal gap";
-            "slip_a_m" "m" .digits(4) = r.point.slip_a_m, "tangential jump along a, total";
-            "slip_b_m" "m" = r.point.slip_b_m, "tangential jump along b, total; 0 in 2D";
-            "p_n" "`force_unit`" .digits(4) = r.point.p_n, "normal contact force; divided by `weight` it is the contact pressure in Pa";
-            "p_a" "`force_unit`" .digits(4) = r.point.p_a, "tangential contact force along a";
-            "p_b" "`force_unit`" = r.point.p_b, "tangential contact force along b; 0 in 2D";
-            "force_unit" "" = r.point.force_unit.clone(), "`N/m` in 2D, `N` in 3D";
-            "status" "" .shown() = r.point.status.clone(), "`open`, `stick` or `slip`";
-        })
+impl<'a> DeviationRow<'a> {
+    /// Those of a run.
+    pub fn of(record: &'a Record) -> impl Iterator<Item = Self> {
+        let exact = record.found.deviations.iter().map(Ok);
+        let followed = record.found.values.iter().map(Err);
+        exact
+            .chain(followed)
+            .map(move |quantity| Self { record, quantity })
     }
-}
 
-impl Row for ExactRow {
-    const NAME: &'static str = "exact";
-    const TITLE: &'static str = "The closed form along a 2D crack, where the case names one";
-    const QUESTION: &'static str = "What would the exact solution be along the crack?";
-    const NOTES: &'static str = "161 places from end to end, dense at the ends, those outside the body left out; the same for all meshes, contact spaces and methods. Compare with `p_n`/`weight` of `points.csv`. A contact point of an integrated space holds the mean over its function, which near a tip differs from the value at its place.";
-    const READABLE: bool = false;
+    /// Whether there is a closed form.
+    pub fn is_exact(&self) -> bool {
+        self.quantity.is_ok()
+    }
 
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "case" "" .key() = r.case.clone(), CASE;
-            "friction" "–" .key() = r.friction, FRICTION;
-            "increment" "" .key() = r.increment, INCREMENT;
-            "crack" "" .key() = r.crack, "number of the crack, from 1";
-            "s_m" "m" .key() = r.s_m, "distance along the crack from its first point";
-            "x_m" "m" = r.x_m, "position";
-            "y_m" "m" = r.y_m, "position";
-            "gap_m" "m" .shown() = r.gap_m, "normal gap; below 1e-12 of the largest jump it is `0`, like the slip";
-            "slip_a_m" "m" .shown() = r.slip_a_m, "tangential jump along a, total";
-            "p_n_pa" "Pa" .shown() = r.p_n_pa, "contact pressure; below 1e-12 of the largest traction it is `0`, like the shear";
-            "p_a_pa" "Pa" .shown() = r.p_a_pa, "tangential contact traction along a on side 1";
+    fn names(&self) -> [&'a str; 2] {
+        match self.quantity {
+            Ok(d) => [&d.quantity, &d.at],
+            Err(v) => [&v.quantity, &v.at],
         }
     }
 }
 
-impl Row for ExpectRow {
-    const NAME: &'static str = "expectations";
-    const TITLE: &'static str = "Expected and found: one row per `[[expect]]` block and run";
-    const QUESTION: &'static str =
-        "Which closed forms and published numbers are met, by whom, how closely?";
+impl<'a> DeviationRow<'a> {
+    /// All; a quantity without exact value says something only beside that of another mesh.
+    pub fn all(records: &'a [Record]) -> Vec<Self> {
+        let refined: Vec<Problem> = sequences(records).into_iter().flatten().collect();
+        let own = records.iter().flat_map(|record| {
+            let mut all = refined.iter();
+            let several = all.any(|own| own.is_same_problem(&record.asked));
+            Self::of(record).filter(move |row| several || row.is_exact())
+        });
+        own.collect()
+    }
+}
+
+impl OfRecord for DeviationRow<'_> {
+    fn record(&self) -> &Record {
+        self.record
+    }
+}
+
+impl Row for DeviationRow<'_> {
+    const NAME: &'static str = "deviations";
+    const TITLE: &'static str = "Quantities at the end of the path, of runs with an honest verdict";
+    const QUESTION: &'static str = "How far is the mesh from the exact solution?";
+    const NOTES: &'static str =
+        "Without a closed form only of cases that the study has on several meshes.";
     const READABLE: bool = false;
+    const ORDER: Order<Self> =
+        Order::By(|a, b| compare_runs(a.record, b.record).then_with(|| a.names().cmp(&b.names())));
 
     fn columns() -> Vec<Column<Self>> {
-        keyed(columns! { r: Self,
-            "quantity" "" .key() = r.quantity.clone(), "as in `quantities.csv`";
-            "at" "" .key() = r.at.clone(), AT;
-            "component" "" .key() = r.component.clone(), COMPONENT;
-            "expected" "`unit`" .digits(6) = r.expected, "expected value";
-            "found" "`unit`" .digits(6) = r.found, "value of the run; `NaN` where it has none";
-            "allowed" "`unit`" .digits(2) = r.allowed, "allowed difference";
-            "unit" "" .shown() = r.unit.clone(), "unit of the three";
-            "kind" "" .key() = r.kind.clone(), "`analytic`, `published`, `independent` or `snapshot`";
-            "source" "" .hidden_key() = r.source.clone(), "where the expected value comes from";
-            "verdict" "" .shown() = r.verdict.clone(), "`met`, `missed`, `missed as documented` (a stated limitation) or `met against the documentation`";
+        of_record(columns! { r: Self,
+            "kind" "" = if r.is_exact() { EXACT } else { "followed" }, "`exact`: beside the closed form; `followed`: a quantity of interest of a case without";
+            "quantity" "" = r.names()[0], "as in `convergence.csv`";
+            "at" "" = r.names()[1], "place and component; empty: the whole body";
+            "found" "SI" = r.quantity.map_or_else(|v| v.value, |d| d.found), "value";
+            "reference" "SI" = r.quantity.map_or(f64::NAN, |d| d.exact), "exact value; `NaN` of a followed quantity";
+            "error" "" .significant(4) = r.quantity.map_or(f64::NAN, |d| d.error), "as in `convergence.csv`; `NaN` of a followed quantity";
+            "norm" "SI" = r.quantity.map_or_else(|v| v.norm, |_| f64::NAN), "what errors of a followed quantity are relative to";
         })
-    }
-}
-
-/// Expected numbers of one case, by all exact methods.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExpectSummary {
-    case: String,
-    kinds: String,
-    numbers: usize,
-    met: usize,
-    documented: usize,
-    worst: f64,
-}
-
-impl ExpectSummary {
-    /// A row per case.
-    pub fn of(rows: &[ExpectRow]) -> Vec<Self> {
-        let mut cases: Vec<&str> = rows.iter().map(|row| row.key.case.as_str()).collect();
-        cases.sort_unstable();
-        cases.dedup();
-        let summary = |case: &str| {
-            let own = || rows.iter().filter(|row| row.key.case == case);
-            let count = |verdict: &str| own().filter(|row| row.verdict == verdict).count();
-            let mut kinds: Vec<&str> = own().map(|row| row.kind.as_str()).collect();
-            kinds.sort_unstable();
-            kinds.dedup();
-            let met = own().filter(|row| row.verdict == MET);
-            let used = met.map(|row| (row.found - row.expected).abs() / row.allowed);
-            Self {
-                case: case.to_owned(),
-                kinds: kinds.join(", "),
-                numbers: own().count(),
-                met: count(MET),
-                documented: count(MISSED_AS_DOCUMENTED),
-                worst: used.fold(0.0, f64::max),
-            }
-        };
-        cases.into_iter().map(summary).collect()
-    }
-}
-
-impl Row for ExpectSummary {
-    const NAME: &'static str = "expectations_by_case";
-    const TITLE: &'static str = "Expected numbers by case, all exact methods";
-    const QUESTION: &'static str = "Are the expected numbers met?";
-    const ORDER: Order<Self> = Order::Given;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "case" "" .shown() = r.case.clone(), CASE;
-            "kind" "" .shown() = r.kinds.clone(), "kinds of the expected numbers";
-            "numbers" "" .shown() = r.numbers, "expected numbers times exact methods";
-            "met" "" .shown() = r.met, "within their tolerance";
-            "missed_as_documented" "" .shown() = r.documented, "limitations that the case file states";
-            "not_as_stated" "" .shown() = r.numbers - r.met - r.documented, "neither";
-            "worst_met" "–" .significant(3).named("worst met, of its tolerance").digits(2) = r.worst, "largest |found − expected| / allowed of those met";
-        }
     }
 }

@@ -7,8 +7,6 @@ pub const SPACE: &str =
 pub const METHOD: &str = "method, options other than the default in brackets; `exec:` and the name of the file of a program from outside";
 pub const FRICTION: &str = "friction coefficient (of the first crack where cracks differ)";
 pub const INCREMENT: &str = "number of the increment, from 1; 0: the state at time 0, solved first where something acts then";
-pub const TIER: &str =
-    "requested accuracy: `low` 1e-3, `mid` 1e-6, `high` 1e-9 on the violation of the contact laws";
 pub const VERDICT: &str = "what the method claims, checked: `solved`, `solved (several)` (another answer holds as well), `approximate: low`, `mid` or `none` (its own laws solved; the contact laws hold to that tier), `false-claim`, `gave-up: …`, `refused: …`, `crashed: …`, `timed-out`, `out-of-memory`; `not run` where there is no such run";
 pub const NATURAL_MAP: &str = "residual of the contact conditions, found by the judge";
 pub const ITERATIONS: &str = "iterations of the method";

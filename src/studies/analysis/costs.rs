@@ -87,16 +87,6 @@ impl<'a> Costs<'a> {
         all
     }
 
-    /// The costs of some methods alone, given by their places.
-    pub fn of_methods(&self, methods: &[usize]) -> Self {
-        let chosen = |row: &Vec<Option<Cost>>| methods.iter().map(|m| row[*m]).collect();
-        Self {
-            methods: methods.iter().map(|m| self.methods[*m]).collect(),
-            costs: self.costs.iter().map(chosen).collect(),
-            untimed: self.untimed,
-        }
-    }
-
     /// How many problems.
     pub fn problems(&self) -> usize {
         self.costs.len()
@@ -112,16 +102,6 @@ impl<'a> Costs<'a> {
     pub fn median_width(&self) -> f64 {
         let costs = self.costs.iter().flatten().flatten();
         median(costs.map(Cost::relative_width))
-    }
-
-    /// Those among the right answers to a problem that none is cheaper than beyond the intervals.
-    pub fn cheapest(&self, problem: usize) -> Vec<usize> {
-        let row = &self.costs[problem];
-        let right = || row.iter().enumerate().filter_map(|(m, c)| Some((m, (*c)?)));
-        right()
-            .filter(|(_, own)| !right().any(|(_, other)| other.is_below(own)))
-            .map(|(method, _)| method)
-            .collect()
     }
 }
 
@@ -154,12 +134,11 @@ mod tests {
     }
 
     #[test]
-    fn what_overlaps_the_cheapest_is_as_cheap() {
-        // Intervals of ±10 %: 1.0 and 1.2 overlap, 1.0 and 1.3 do not.
+    fn methods_stand_in_the_order_of_the_registry() {
+        // Intervals of ±10 %.
         let records = solved("plate", &[("b-newton", 1.0), ("pdas", 1.2), ("latin", 1.3)]);
         let costs = costs(&records);
         assert_eq!(costs.methods, ["b-newton", "pdas", "latin"]);
-        assert_eq!(costs.cheapest(0), [0, 1]);
         assert!((costs.median_width() - 0.2).abs() < 1e-12);
     }
 }

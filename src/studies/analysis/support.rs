@@ -28,16 +28,11 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
         case: case.into(),
         digest: "0123456789abcdef".into(),
         refine: 1,
-        space: None,
-        tip: None,
         friction: vec![0.3],
         increments: 1,
-        cold: false,
         method: method.into(),
         tolerance,
-        finer: None,
-        view: None,
-        program: None,
+        ..Asked::default()
     };
     let label = match method.split_once(':') {
         Some((name, options)) => format!("{name}[{options}]"),

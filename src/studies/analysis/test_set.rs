@@ -66,22 +66,6 @@ impl<'a> TestSet<'a> {
         }
         set
     }
-
-    /// The part of the set on some problems.
-    pub fn restricted(&self, keep: impl Fn(&Problem) -> bool) -> Self {
-        let rows = self.problems.iter().zip(&self.records);
-        let (problems, records) = rows
-            .filter(|(problem, _)| keep(problem))
-            .map(|(problem, row)| (problem.clone(), row.clone()))
-            .unzip();
-        Self {
-            tier: self.tier,
-            methods: self.methods.clone(),
-            problems,
-            records,
-            left_out: self.left_out,
-        }
-    }
 }
 
 #[cfg(test)]

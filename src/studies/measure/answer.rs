@@ -8,6 +8,7 @@ use crate::studies::rows::Jump;
 use crate::studies::stress::energy::Found as Last;
 
 /// A record with what is too large for one.
+#[derive(Debug, Clone)]
 pub struct Answer {
     /// What is kept.
     pub record: Record,

@@ -4,7 +4,8 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use crate::run::verdict::Verdict;
-use crate::studies::rows::RunRow;
+use crate::studies::analysis::published_times;
+use crate::studies::record::{Record, Step};
 use crate::studies::statistics::larger;
 
 /// One method on one case: all meshes, friction coefficients and increments together.
@@ -37,31 +38,34 @@ fn worst<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> Option<&'a Verdict>
 }
 
 /// Sums the runs up by case and method.
-pub fn comparison<'a>(runs: impl IntoIterator<Item = &'a RunRow>) -> Vec<ComparisonRow> {
-    let mut groups: BTreeMap<(&str, &str), Vec<&RunRow>> = BTreeMap::new();
+pub fn comparison<'a>(runs: impl IntoIterator<Item = &'a Record>) -> Vec<ComparisonRow> {
+    let mut groups: BTreeMap<(&str, &str), Vec<&Record>> = BTreeMap::new();
     for run in runs {
-        let key = (run.key.case.as_str(), run.key.method.as_str());
+        let key = (run.asked.case.as_str(), run.found.method.as_str());
         groups.entry(key).or_default().push(run);
     }
-    let row = |((case, method), group): ((&str, &str), Vec<&RunRow>)| {
-        let honest = group.iter().all(|r| r.step.verdict.is_honest());
+    let row = |((case, method), group): ((&str, &str), Vec<&Record>)| {
+        let sum = |counter: fn(&Step) -> usize| group.iter().map(|r| r.found.sum(counter)).sum();
+        let steps = group.iter().flat_map(|r| &r.found.increments);
+        let verdicts = steps.map(|step| &step.verdict);
+        let verdicts = verdicts.chain(group.iter().map(|r| &r.found.verdict));
+        let times = group.iter().map(|r| match published_times(r) {
+            Some(spent) => spent.steps.iter().map(|own| own.total_s).sum(),
+            None => f64::NAN,
+        });
         Some(ComparisonRow {
             case: case.into(),
             method: method.into(),
-            increments: group.len(),
-            verdict: worst(group.iter().map(|r| &r.step.verdict))?.clone(),
+            increments: sum(|_| 1),
+            verdict: worst(verdicts)?.clone(),
             natural_map: group
                 .iter()
-                .map(|r| r.step.judge.natural_map)
+                .map(|r| r.found.natural_map())
                 .fold(0.0, larger),
-            iterations: group.iter().map(|r| r.step.iterations).sum(),
-            tangent_factorisations: group.iter().map(|r| r.step.tangent_factorisations).sum(),
-            local_solves: group.iter().map(|r| r.step.local_solves).sum(),
-            solve_s: if honest {
-                group.iter().map(|r| r.solve_s).sum()
-            } else {
-                f64::NAN
-            },
+            iterations: sum(|step| step.iterations),
+            tangent_factorisations: sum(|step| step.tangent_factorisations),
+            local_solves: sum(|step| step.local_solves),
+            solve_s: times.sum(),
         })
     };
     groups.into_iter().filter_map(row).collect()

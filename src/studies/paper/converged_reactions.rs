@@ -43,15 +43,6 @@ const STAR: [Family; 3] = [
     ("plate_mesh1", "I turned", true, &[1, 2, 4, 8, 16]),
 ];
 
-/// Reaction of the plate on one mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SequenceRow {
-    /// Mesh: `I`, `II` or `I turned`.
-    pub mesh: &'static str,
-    /// The reaction at the top; without quantity where the run is not solved.
-    pub found: ErrorRow,
-}
-
 /// Reaction on the finest mesh of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConvergedRow {
@@ -64,11 +55,6 @@ pub struct ConvergedRow {
 }
 
 impl ConvergedRow {
-    /// Whether the corners of the plate alone keep it from converging.
-    pub fn is_star(&self) -> bool {
-        self.finest.variant.space == ContactSpace::Star.name()
-    }
-
     /// Reaction [MN/m].
     pub fn reaction_mn_per_m(&self) -> f64 {
         as_printed(self.finest.found)
@@ -95,7 +81,7 @@ pub fn converged_reactions(
     star: bool,
     printed: &[Table1Row],
     progress: &dyn Progress,
-) -> Result<(Vec<SequenceRow>, Vec<ConvergedRow>), PaperError> {
+) -> Result<(Vec<ErrorRow>, Vec<ConvergedRow>), PaperError> {
     let mut sequences = Vec::new();
     let mut finest = Vec::new();
     let edge_pairs = EDGE_PAIRS.map(|family| (ContactSpace::EdgePairs, None, family));
@@ -113,13 +99,8 @@ pub fn converged_reactions(
         let (errors, orders) = orders::rows(&samples);
         // A mesh that is not solved has a row without quantity.
         let wanted = |quantity: &str, at: &str| (quantity, at) == ("reaction", "top y");
-        let own = errors
-            .iter()
-            .filter(|row| wanted(&row.quantity, &row.at) || row.kind.is_none());
-        sequences.extend(own.map(|row| SequenceRow {
-            mesh,
-            found: row.clone(),
-        }));
+        let own = |row: &ErrorRow| wanted(&row.quantity, &row.at) || row.kind.is_none();
+        sequences.extend(errors.into_iter().filter(own));
         for OrderRow { finest: row, .. } in orders {
             let alike = |other: &&Table1Row| {
                 !turned && other.mesh == mesh && other.friction == row.variant.friction
@@ -144,6 +125,7 @@ fn plate(name: &str, turned: bool) -> Result<Case, PaperError> {
         let text = format!("{}\n[mesh.twist]\nangle_deg = {TURN}\n", plate.source);
         plate = case::parse(&plate.file, text)?;
         plate.expects.clear();
+        plate.name += "_turned";
     }
     Ok(plate)
 }

@@ -5,7 +5,8 @@ use crate::run::choice::Choice;
 use crate::run::registry::method;
 use crate::run::verdict::Verdict;
 use crate::studies::measure::RunError;
-use crate::studies::rows::{Results, RunKey, RunRow};
+use crate::studies::record::Record;
+use crate::studies::results::Results;
 
 /// Method that the others are compared with.
 pub const REFERENCE_METHOD: &str = "b-newton";
@@ -86,29 +87,24 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn has(&self, key: &RunKey) -> bool {
-        key.case == self.case && key.friction == self.friction && key.method == self.method
+    /// Its record; `None` where there is no such run.
+    pub fn record(&self) -> Option<&'a Record> {
+        let has = |record: &&Record| {
+            (record.asked.case == self.case && record.found.method == self.method)
+                && record.asked.mu() == self.friction
+        };
+        self.results.records().filter(has).last()
     }
 
-    /// Value of a quantity; `None` where the run has none.
+    /// Value of a quantity at its end; `None` where the run has none.
     pub fn value(&self, [quantity, at, component]: [&str; 3]) -> Option<f64> {
-        let own = self
-            .results
-            .quantities
-            .iter()
-            .filter(|row| self.has(&row.key));
-        own.map(|row| &row.quantity)
-            .find(|q| q.name == quantity && q.at == at && q.component == component)
+        let mut own = self.record()?.found.increments.last()?.quantities.iter();
+        own.find(|q| q.name == quantity && q.at == at && q.component == component)
             .map(|q| q.value)
     }
 
-    /// Row of the last increment; `None` where there is no such run.
-    pub fn last(&self) -> Option<&'a RunRow> {
-        self.results.runs.iter().rfind(|row| self.has(&row.key))
-    }
-
-    /// Verdict of the last increment.
+    /// Its verdict.
     pub fn verdict(&self) -> Option<Verdict> {
-        self.last().map(|row| row.step.verdict.clone())
+        self.record().map(|record| record.found.verdict.clone())
     }
 }

@@ -6,7 +6,7 @@ use crate::studies::cases::{Settings, run_case};
 use crate::studies::paper::lookup::{
     PaperError, REACTION, REFERENCE_METHOD, Run, as_printed, case, choice,
 };
-use crate::studies::rows::Results;
+use crate::studies::results::Results;
 
 /// Multiples of the natural scale that the penalty stiffness is swept over.
 const PENALTIES: [f64; 7] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
@@ -49,7 +49,7 @@ pub fn penalty_rows(
         let exact = run(results, REFERENCE_METHOD).value(REACTION);
         for (c, choice) in PENALTIES.iter().zip(&choices) {
             let run = run(&swept, &choice.label);
-            let (found, row) = (run.value(REACTION), run.last());
+            let found = run.value(REACTION);
             let deepest = run.value(["max_penetration", "crack-1", ""]);
             rows.push(PenaltyRow {
                 friction,
@@ -60,7 +60,7 @@ pub fn penalty_rows(
                     _ => f64::NAN,
                 },
                 max_penetration_m: deepest.unwrap_or(f64::NAN),
-                natural_map: row.map_or(f64::NAN, |r| r.step.judge.natural_map),
+                natural_map: run.record().map_or(f64::NAN, |r| r.found.natural_map()),
                 verdict: run.verdict(),
             });
         }

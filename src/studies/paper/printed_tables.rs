@@ -6,7 +6,7 @@
 use crate::run::registry::methods;
 use crate::run::verdict::Verdict;
 use crate::studies::paper::lookup::{PaperError, REACTION, Run, as_printed};
-use crate::studies::rows::Results;
+use crate::studies::results::Results;
 use crate::studies::statistics::larger;
 
 /// Printed numbers.

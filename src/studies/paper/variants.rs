@@ -5,7 +5,7 @@ use crate::run::choice::Choice;
 use crate::run::progress::Progress;
 use crate::run::registry::methods;
 use crate::studies::cases::{Settings, run_case};
-use crate::studies::rows::RunRow;
+use crate::studies::record::Record;
 
 /// Cases that variants are run on.
 const CASES: [&str; 2] = ["plate_mesh1", "beam_model1"];
@@ -28,11 +28,12 @@ const MONOLITHIC: &str = "monolithic";
 pub fn variant_runs(
     settings: Settings,
     progress: &dyn Progress,
-) -> Result<Vec<RunRow>, PaperError> {
+) -> Result<Vec<Record>, PaperError> {
     let choices = variants()?;
     let mut runs = Vec::new();
     for name in CASES {
-        runs.extend(run_case(&case(name)?, &choices, settings, progress)?.runs);
+        let found = run_case(&case(name)?, &choices, settings, progress)?;
+        runs.extend(found.answers.into_iter().map(|own| own.record));
     }
     Ok(runs)
 }

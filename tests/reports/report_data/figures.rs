@@ -3,7 +3,8 @@
 use super::{beam_step, cycle, exact, key, rates, results, results_of_all_methods};
 use stickslip::report::{Bundle, Provenance, figures, standard};
 use stickslip::studies::paper::comparison::comparison;
-use stickslip::studies::rows::{Results, RunFields};
+use stickslip::studies::results::Results;
+use stickslip::studies::rows::RunFields;
 
 /// The figures of a bundle by name, without their folder.
 pub fn of(bundle: &Bundle) -> Vec<(String, String)> {
@@ -37,20 +38,12 @@ pub fn comparison_of_methods() -> Results {
     }
 }
 
-/// A load path of one problem.
-pub fn load_path() -> Results {
-    Results {
-        quantities: cycle(),
-        ..Results::default()
-    }
-}
-
 /// Every kind of figure that made-up results have.
 pub fn figures() -> Vec<(String, String)> {
     let mut found = of_results(&results());
     let all = comparison_of_methods();
     let mut bundle = Bundle::new();
-    let mut compared = comparison(&all.runs);
+    let mut compared = comparison(all.records());
     for (k, row) in compared.iter_mut().enumerate() {
         row.solve_s *= (1 + k) as f64;
     }
@@ -58,12 +51,12 @@ pub fn figures() -> Vec<(String, String)> {
     figures::success::add(&mut bundle, &rates(), "").expect("rates");
     let fields = RunFields {
         key: key("hybrid", 0.3),
-        steps: vec![beam_step()],
+        steps: &[beam_step()],
     };
     figures::fields::add(&mut bundle, &fields).expect("contact");
     found.extend(of(&bundle));
     let renamed = |(name, svg): (String, String)| (format!("all.{name}"), svg);
     found.extend(of_results(&all).into_iter().map(renamed));
-    found.extend(of_results(&load_path()));
+    found.extend(of_results(&cycle()));
     found
 }

@@ -7,10 +7,15 @@ pub mod figures;
 
 use stickslip::model::field_mesh::*;
 use stickslip::model::quantities::{PointState, Quantity};
+use stickslip::run::judged::{Seconds, Work};
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::analysis::success::{FAILURES, SuccessRow};
-use stickslip::studies::record::{Judge, ProblemSize, Step};
+use stickslip::studies::measure::Answer;
+use stickslip::studies::origin::Origin;
+use stickslip::studies::record::{Found, Judge, ProblemSize, Record, Spent, Step};
+use stickslip::studies::results::Results;
 use stickslip::studies::rows::*;
+use stickslip::studies::task::{Asked, Looks};
 
 pub const METHODS: [&str; 4] = ["augmented-lagrangian", "b-newton", "latin", "penalty"];
 pub const FRICTIONS: [f64; 3] = [0.1, 0.8, 1.2];
@@ -47,7 +52,6 @@ pub fn results() -> Results {
             add_run(&mut results, key(method, friction));
         }
     }
-    let key = key("b-newton", 0.1);
     let step = FieldStep {
         time: 1.0,
         body: plate(),
@@ -57,11 +61,88 @@ pub fn results() -> Results {
         time: 0.5,
         ..step.clone()
     };
-    results.fields.push(RunFields {
-        key,
-        steps: vec![half, step],
-    });
+    let mut runs = results.answers.iter_mut();
+    let own = runs.find(|own| own.record.found.method == "b-newton");
+    own.expect("a run").fields = vec![half, step];
     results
+}
+
+/// An increment that is solved at once.
+pub fn solved(increment: usize) -> Step {
+    Step {
+        increment,
+        verdict: Verdict::Solved,
+        iterations: 0,
+        solves: 0,
+        tangent_factorisations: 0,
+        global_factorisations: 0,
+        local_solves: 0,
+        judge: Judge::of(None),
+        overlap_m: f64::NAN,
+        state_changes: 0,
+        final_changes: 0,
+        states: [0; 3],
+        quantities: Vec::new(),
+    }
+}
+
+/// A run that was asked for 1e-9.
+pub fn answer(key: &RunKey, increments: Vec<Step>) -> Answer {
+    let asked = Asked {
+        case: key.case.clone(),
+        refine: 1,
+        friction: vec![key.friction],
+        increments: 1,
+        method: key.method.clone(),
+        tolerance: 1e-9,
+        ..Asked::default()
+    };
+    let solve = Seconds {
+        total_s: 4.567_891e-4,
+        enforcement_s: 1.234e-4,
+        ..Seconds::default()
+    };
+    let work = Work {
+        factorisations: 1,
+        factorisation_s: 0.002_345_678,
+        condensation_s: 0.000_345_678_9,
+        prepare_s: 1.234e-5,
+        solve,
+        traction: false,
+    };
+    let verdict = increments.last().expect("an increment").verdict.clone();
+    let exact = stickslip::run::registry::method(&key.method).is_some_and(|own| own.exact);
+    let found = Found {
+        problem: Some(ProblemSize {
+            mesh: key.mesh.clone(),
+            space: key.space.clone(),
+            dofs: 1016,
+            points: 11,
+            unknowns: 22,
+            uniform_stress: 2e-15,
+            ..ProblemSize::default()
+        }),
+        increments,
+        ..Found::only(verdict, key.method.clone(), exact)
+    };
+    let record = Record {
+        id: asked.id(),
+        asked,
+        class: String::new(),
+        looks: Looks::default(),
+        origin: Origin::here(),
+        limits: None,
+        found,
+        spent: Spent::of([0.000_123_45, 0.001_234_567], &[work]),
+    };
+    Answer {
+        record,
+        histories: Vec::new(),
+        points: Vec::new(),
+        fields: Vec::new(),
+        jumps: Vec::new(),
+        solution: None,
+    }
 }
 
 fn add_run(results: &mut Results, key: RunKey) {
@@ -73,75 +154,43 @@ fn add_run(results: &mut Results, key: RunKey) {
     };
     let wobble = |i: usize| 1.0 + 0.3 * (i as f64 * 1.7).sin();
     let residual = |i: usize| 0.4 * f64::powi(rate, i as i32) * wobble(i);
-    results.runs.push(RunRow {
-        key: key.clone(),
-        tier: "high".into(),
-        step: Step {
-            increment: key.increment,
-            verdict: Verdict::Solved,
-            iterations,
-            solves: iterations + 12,
-            tangent_factorisations: 3,
-            global_factorisations: 0,
-            local_solves: 33,
-            judge: Judge {
-                natural_map: residual(iterations),
-                violation: residual(iterations),
-                equilibrium: 3.2e-14,
-                claimed_equilibrium: 3.2e-14,
-                claimed: residual(iterations),
-                penetration: 0.5 * residual(iterations),
-                adhesion: 0.0,
-                complementarity: 0.1 * residual(iterations),
-                cone: 0.0,
-                reference_force: 1e8,
-                reference_jump_m: 0.1,
-                sway: 12.5,
-            },
-            overlap_m: 1.5e-7,
-            state_changes: 0,
-            final_changes: 0,
-            states: [0, 0, 11],
-            quantities: Vec::new(),
+    let reaction = |(component, value): (&str, f64)| Quantity {
+        name: "reaction".into(),
+        at: "top".into(),
+        component: component.into(),
+        value,
+        unit: "N/m".into(),
+    };
+    let step = Step {
+        iterations,
+        solves: iterations + 12,
+        tangent_factorisations: 3,
+        local_solves: 33,
+        judge: Judge {
+            natural_map: residual(iterations),
+            violation: residual(iterations),
+            equilibrium: 3.2e-14,
+            claimed_equilibrium: 3.2e-14,
+            claimed: residual(iterations),
+            penetration: 0.5 * residual(iterations),
+            adhesion: 0.0,
+            complementarity: 0.1 * residual(iterations),
+            cone: 0.0,
+            reference_force: 1e8,
+            reference_jump_m: 0.1,
+            sway: 12.5,
         },
-        size: ProblemSize {
-            dofs: 1016,
-            points: 11,
-            unknowns: 22,
-            uniform_stress: 2e-15,
-            ..ProblemSize::default()
-        },
-        factorisations: 1,
-        setup_s: 0.000_123_45,
-        assembly_s: 0.001_234_567,
-        factorisation_s: 0.002_345_678,
-        condensation_s: 0.000_345_678_9,
-        prepare_s: 1.234e-5,
-        solve_s: 4.567_891e-4,
-        enforcement_s: 1.234e-4,
-        reported_s: f64::NAN,
+        overlap_m: 1.5e-7,
+        quantities: [("y", -973_543_210.987_65), ("x", -0.0)]
+            .map(reaction)
+            .into(),
+        ..solved(1)
+    };
+    results.answers.push(Answer {
+        histories: vec![(0..=iterations).map(residual).collect()],
+        points: vec![points(&key.method, key.friction)],
+        ..answer(&key, vec![step])
     });
-    for (component, value) in [("y", -973_543_210.987_65), ("x", -0.0)] {
-        results.quantities.push(QuantityRow {
-            key: key.clone(),
-            quantity: Quantity {
-                name: "reaction".into(),
-                at: "top".into(),
-                component: component.into(),
-                value,
-                unit: "N/m".into(),
-            },
-        });
-    }
-    for iteration in (0..=iterations).rev() {
-        let violation = residual(iteration);
-        results.history.push(HistoryRow {
-            key: key.clone(),
-            iteration,
-            violation,
-        });
-    }
-    results.points.extend(points(&key));
     results.expectations.push(ExpectRow {
         key,
         quantity: "reaction".into(),
@@ -188,11 +237,11 @@ pub fn rates() -> Vec<SuccessRow> {
 }
 
 /// 11 points along the crack: the left end open, the middle slipping, the right end sticking.
-pub fn points(key: &RunKey) -> Vec<PointRow> {
+pub fn points(method: &str, friction: f64) -> Vec<PointState> {
     let length = CRACK * 2f64.sqrt() * 2.0;
     let point = |i: usize| {
         let s = length * (i as f64 + 0.5) / 11.0;
-        let shift = METHODS.iter().position(|m| *m == key.method).unwrap_or(0) as f64;
+        let shift = METHODS.iter().position(|m| *m == method).unwrap_or(0) as f64;
         let bump = (s * (length - s)).sqrt() / length;
         let pressure = if i < 2 {
             0.0
@@ -205,29 +254,26 @@ pub fn points(key: &RunKey) -> Vec<PointRow> {
             _ => "stick",
         };
         let sliding = if status == "stick" { 0.8 } else { 1.0 };
-        PointRow {
-            key: key.clone(),
-            point: PointState {
-                crack: 1,
-                number: i + 1,
-                x_m: -CRACK + s / 2f64.sqrt(),
-                y_m: -CRACK + s / 2f64.sqrt(),
-                z_m: 0.0,
-                s_m: s,
-                weight: length / 11.0,
-                gap_m: if i < 2 { 2e-4 } else { 1e-19 },
-                slip_a_m: if status == "stick" {
-                    0.0
-                } else {
-                    0.07 * bump * (1.2 - key.friction / 2.0)
-                },
-                slip_b_m: 0.0,
-                p_n: pressure * length / 11.0,
-                p_a: -sliding * key.friction * pressure * length / 11.0,
-                p_b: 0.0,
-                force_unit: "N/m".into(),
-                status: status.into(),
+        PointState {
+            crack: 1,
+            number: i + 1,
+            x_m: -CRACK + s / 2f64.sqrt(),
+            y_m: -CRACK + s / 2f64.sqrt(),
+            z_m: 0.0,
+            s_m: s,
+            weight: length / 11.0,
+            gap_m: if i < 2 { 2e-4 } else { 1e-19 },
+            slip_a_m: if status == "stick" {
+                0.0
+            } else {
+                0.07 * bump * (1.2 - friction / 2.0)
             },
+            slip_b_m: 0.0,
+            p_n: pressure * length / 11.0,
+            p_a: -sliding * friction * pressure * length / 11.0,
+            p_b: 0.0,
+            force_unit: "N/m".into(),
+            status: status.into(),
         }
     };
     (0..11).rev().map(point).collect()
@@ -309,13 +355,13 @@ pub fn plate() -> FieldMesh {
 
 /// The crack as a line of segments with contact fields.
 pub fn crack_line() -> FieldMesh {
-    let rows = points(&key("b-newton", 0.1));
+    let rows = points("b-newton", 0.1);
     let mut picture = FieldMesh {
         dim: 2,
         ..FieldMesh::default()
     };
     for row in rows.iter().rev() {
-        picture.points.push([row.point.x_m, row.point.y_m, 0.0]);
+        picture.points.push([row.x_m, row.y_m, 0.0]);
     }
     for i in 1..rows.len() {
         picture.cells.push(FieldCell {
@@ -323,18 +369,18 @@ pub fn crack_line() -> FieldMesh {
             points: vec![i - 1, i],
         });
     }
-    let scalar = |of: &dyn Fn(&PointRow) -> f64| rows.iter().rev().map(of).collect::<Vec<f64>>();
-    let status = |row: &PointRow| match row.point.status.as_str() {
+    let scalar = |of: &dyn Fn(&PointState) -> f64| rows.iter().rev().map(of).collect::<Vec<f64>>();
+    let status = |row: &PointState| match row.status.as_str() {
         "open" => 0.0,
         "stick" => 1.0,
         _ => 2.0,
     };
     picture
         .point_scalars
-        .push(("gap_m".into(), scalar(&|row| row.point.gap_m)));
+        .push(("gap_m".into(), scalar(&|row| row.gap_m)));
     picture
         .point_scalars
-        .push(("p_n".into(), scalar(&|row| row.point.p_n)));
+        .push(("p_n".into(), scalar(&|row| row.p_n)));
     picture
         .point_scalars
         .push(("status".into(), scalar(&status)));
@@ -472,7 +518,7 @@ pub fn exact(friction: f64) -> Vec<ExactRow> {
 
 /// Mean slip and contact force over a cycle of 12 increments that turns back after the fourth and the eighth, by two exact
 /// methods and a third that ends early: shear up to 3 kN/m in the first two increments, then slip of 1 mm in two more.
-pub fn cycle() -> Vec<QuantityRow> {
+pub fn cycle() -> Results {
     let path = [
         [0.0, 1.5e3],
         [0.0, 3e3],
@@ -487,27 +533,27 @@ pub fn cycle() -> Vec<QuantityRow> {
         [1e-3, -3e3],
         [0.0, -3e3],
     ];
-    let mut rows = Vec::new();
+    let mut results = Results::default();
     for (method, count) in [("latin", 12), ("b-newton", 12), ("nsgs", 7)] {
-        for (index, [slip, shear]) in path.into_iter().enumerate().take(count) {
-            let mut key = key(method, 0.3);
-            key.increment = index + 1;
-            let mut push = |quantity: &str, value: f64, unit: &str| {
-                rows.push(QuantityRow {
-                    key: key.clone(),
-                    quantity: Quantity {
-                        name: quantity.into(),
-                        at: "crack-1".into(),
-                        component: "a".into(),
-                        value,
-                        unit: unit.into(),
-                    },
-                });
-            };
-            push("mean_slip", slip, "m");
+        let quantity = |name: &str, value: f64, unit: &str| Quantity {
+            name: name.into(),
+            at: "crack-1".into(),
+            component: "a".into(),
+            value,
+            unit: unit.into(),
+        };
+        let path = path.iter().take(count).enumerate();
+        let steps = path.map(|(index, [slip, shear])| Step {
             // The force on side 1 opposes what shears it.
-            push("contact_force", -shear, "N/m");
-        }
+            quantities: vec![
+                quantity("mean_slip", *slip, "m"),
+                quantity("contact_force", -shear, "N/m"),
+            ],
+            ..solved(index + 1)
+        });
+        results
+            .answers
+            .push(answer(&key(method, 0.3), steps.collect()));
     }
-    rows
+    results
 }

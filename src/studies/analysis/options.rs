@@ -9,15 +9,14 @@
 //!   fast      = the widest such range in which also ratio ≤ 2 for every problem
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use stickslip_methods::OptionSpec;
 
 use super::{claims, compare_methods, compare_problems, problems};
 use crate::run::choice::Choice;
-use crate::run::verdict::Verdict;
 use crate::studies::record::Record;
-use crate::studies::statistics::{larger, median};
+use crate::studies::statistics::median;
 
 /// Iterations over those at the default up to which a value counts as fast.
 pub const FAST: f64 = 2.0;
@@ -25,8 +24,6 @@ pub const FAST: f64 = 2.0;
 /// A method on some problems with several values of one of its options.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
-    /// Case, or seeded suite of problems; none: all problems of the method.
-    pub class: Option<String>,
     /// Method, other options that are not the default in brackets.
     pub method: String,
     /// Whether the limit of the method are the contact laws.
@@ -39,8 +36,6 @@ pub struct Sweep {
     pub tolerance: f64,
     /// Problems that every value was given.
     pub problems: usize,
-    /// Problems that some value was not given.
-    pub left_out: usize,
     /// The values, increasing.
     pub steps: Vec<Step>,
 }
@@ -52,20 +47,10 @@ pub struct Step {
     pub value: f64,
     /// Problems solved.
     pub solved: usize,
-    /// Claims that the judge refuted.
-    pub false_claims: usize,
-    /// Median of the iterations over the problems solved; NaN without any.
-    pub iterations: f64,
-    /// Most iterations on a problem solved; NaN without any.
-    pub most: f64,
     /// Most iterations of one increment of a problem solved; NaN without any.
     pub hardest: f64,
-    /// Median of the iterations over the problems not solved; NaN without any.
-    pub spent: f64,
     /// Iterations over those at the default, of problems solved at both: median and largest; NaN without any.
     pub ratio: [f64; 2],
-    /// Largest violation of the contact laws on a problem solved; NaN without any.
-    pub violation: f64,
 }
 
 /// Ranges of an option about its default.
@@ -109,7 +94,7 @@ impl Sweep {
     }
 }
 
-/// All sweeps: those of every class of problems, and before them where there are several that of all problems.
+/// All sweeps.
 pub fn sweeps(records: &[Record]) -> Vec<Sweep> {
     let mut groups: BTreeMap<Key, (OptionSpec, Vec<Setting<'_>>)> = BTreeMap::new();
     for record in records {
@@ -130,22 +115,10 @@ pub fn sweeps(records: &[Record]) -> Vec<Sweep> {
                 .push(setting);
         }
     }
-    let mut all = Vec::new();
-    for (key, (spec, own)) in &groups {
-        let classes: BTreeSet<&str> = own.iter().map(|(_, r)| class(&r.asked.case)).collect();
-        let several = classes.len() > 1;
-        let of = |class, own: &[Setting<'_>]| {
-            let known = (spec.default().number(), fewest(spec));
-            sweep(key, known, class, own)
-        };
-        let whole = several.then(|| of(None, own)).flatten();
-        all.extend(whole);
-        for name in classes {
-            let of_class = |s: &&Setting<'_>| class(&s.1.asked.case) == name;
-            let own: Vec<Setting<'_>> = own.iter().filter(of_class).copied().collect();
-            all.extend(of(Some(name), &own));
-        }
-    }
+    let of = |(key, (spec, own)): (&Key, &(OptionSpec, Vec<Setting<'_>>))| {
+        sweep(key, (spec.default().number(), fewest(spec)), own)
+    };
+    let mut all: Vec<Sweep> = groups.iter().filter_map(of).collect();
     all.sort_by(|a, b| {
         let methods = compare_methods(&a.method, &b.method);
         methods.then(b.tolerance.total_cmp(&a.tolerance))
@@ -178,18 +151,6 @@ fn others(choice: &Choice, option: &str) -> String {
     }
 }
 
-/// The suite that a problem with a seed and a number belongs to, or the case itself.
-pub fn class(case: &str) -> &str {
-    match case.rsplit_once('-') {
-        Some((suite, number))
-            if suite.contains("-seed-") && number.chars().all(|c| c.is_ascii_digit()) =>
-        {
-            suite
-        }
-        _ => case,
-    }
-}
-
 /// How many values make a sweep: three, or all there are.
 fn fewest(spec: &OptionSpec) -> usize {
     match spec {
@@ -199,12 +160,7 @@ fn fewest(spec: &OptionSpec) -> usize {
     }
 }
 
-fn sweep(
-    key: &Key,
-    (default, fewest): (f64, usize),
-    class: Option<&str>,
-    settings: &[Setting<'_>],
-) -> Option<Sweep> {
+fn sweep(key: &Key, (default, fewest): (f64, usize), settings: &[Setting<'_>]) -> Option<Sweep> {
     let mut values: Vec<f64> = settings.iter().map(|s| s.0).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
@@ -226,14 +182,12 @@ fn sweep(
     let place = values.iter().position(|v| *v == default);
     let step = |(column, value): (usize, &f64)| step(*value, &rows, column, place);
     Some(Sweep {
-        class: class.map(str::to_owned),
         method: key.method.clone(),
         exact: first.found.exact,
         option: key.option,
         default,
         tolerance: f64::from_bits(key.tolerance),
         problems: rows.len(),
-        left_out: all.len() - rows.len(),
         steps: values.iter().enumerate().map(step).collect(),
     })
 }
@@ -249,32 +203,22 @@ fn iterations(record: &Record) -> f64 {
 /// One column of the cells by problem and value; `default`: the column of the default.
 fn step(value: f64, rows: &[Vec<&Record>], column: usize, default: Option<usize>) -> Step {
     let solved = || rows.iter().filter(move |row| is_solved(row[column]));
-    let counts = || solved().map(move |row| iterations(row[column]));
     let ratio = |row: &Vec<&Record>| {
         let before = row[default?];
         // A problem without contact takes no iteration at any value.
         is_solved(before).then(|| iterations(row[column]).max(1.0) / iterations(before).max(1.0))
     };
     let ratios = || solved().filter_map(ratio);
-    let lost = rows.iter().filter(|row| !is_solved(row[column]));
-    let lost = lost.map(|row| iterations(row[column]));
-    let wrong = |row: &&Vec<&Record>| row[column].found.verdict == Verdict::FalseClaim;
     let each = solved().flat_map(|row| &row[column].found.increments);
     let hardest = each.map(|increment| increment.iterations as f64);
-    let violations = solved().map(|row| row[column].found.violation());
     Step {
         value,
         solved: solved().count(),
-        false_claims: rows.iter().filter(wrong).count(),
-        iterations: median(counts()),
-        most: counts().reduce(f64::max).unwrap_or(f64::NAN),
         hardest: hardest.reduce(f64::max).unwrap_or(f64::NAN),
-        spent: median(lost),
         ratio: [
             median(ratios()),
             ratios().reduce(f64::max).unwrap_or(f64::NAN),
         ],
-        violation: violations.reduce(larger).unwrap_or(f64::NAN),
     }
 }
 
@@ -302,30 +246,24 @@ mod tests {
             }
         }
         end_with(&mut records[5], "false-claim");
-        let all = sweeps(&records);
-        let classes: Vec<Option<&str>> = all.iter().map(|s| s.class.as_deref()).collect();
-        assert_eq!(classes, [None, Some("a"), Some("b")]);
-        let [whole, a, b] = &all[..] else { panic!() };
-        assert_eq!(
-            (whole.problems, whole.left_out, whole.steps.len()),
-            (2, 0, 7)
-        );
-        assert_eq!(whole.steps[5].solved, 1);
-        let wrong: Vec<usize> = whole.steps.iter().map(|s| s.false_claims).collect();
-        assert_eq!(wrong, [0, 0, 0, 0, 0, 1, 0]);
+        let whole = |records: &[Record]| sweeps(records).swap_remove(0);
+        let both = whole(&records);
+        assert_eq!((both.problems, both.steps.len()), (2, 7));
+        assert_eq!(both.steps[5].solved, 1);
         let windows = |sweep: &Sweep| {
             let own = sweep.windows().unwrap();
             (own.tried, own.safe, own.fast)
         };
         let (tried, lost) = ([1e-3, 1e3], Some([1e-3, 10.0]));
         // That r = 0.001 is fast and r = 1000 solves does not widen a range that is broken before.
-        assert_eq!(windows(whole), (tried, lost, Some([0.1, 10.0])));
-        assert_eq!(windows(a), (tried, lost, Some([0.1, 10.0])));
-        assert_eq!(windows(b), (tried, Some(tried), Some([0.1, 1e3])));
+        assert_eq!(windows(&both), (tried, lost, Some([0.1, 10.0])));
+        let second = whole(&records[7..]);
+        assert_eq!(windows(&second), (tried, Some(tried), Some([0.1, 1e3])));
         // Twice the iterations is fast, more is not.
-        assert_eq!((b.steps[1].ratio, b.steps[2].ratio), ([3.0; 2], [1.9; 2]));
+        let ratios = [1, 2].map(|k| second.steps[k].ratio);
+        assert_eq!(ratios, [[3.0; 2], [1.9; 2]]);
         end_with(&mut records[3], "gave-up: stalled");
-        assert_eq!(sweeps(&records)[0].windows().unwrap().safe, None);
+        assert_eq!(whole(&records).windows().unwrap().safe, None);
     }
 
     #[test]
@@ -339,10 +277,8 @@ mod tests {
         ]);
         let all = sweeps(&records);
         let whole = &all[0];
-        assert_eq!((whole.problems, whole.left_out), (1, 1));
-        assert!(whole.steps.iter().all(|s| s.iterations == 10.0));
-        // Two values are no sweep of b.
-        assert_eq!(all.len(), 2);
+        assert_eq!((whole.problems, all.len()), (1, 1));
+        assert!(whole.steps.iter().all(|s| s.hardest == 10.0));
         // A switch has no more than two.
         let switch = ["b-newton", "b-newton:monolithic=1e0"].map(|m| cell("a", m, 10));
         assert_eq!(sweeps(&switch)[0].option, "monolithic");
@@ -361,17 +297,5 @@ mod tests {
             .collect();
         let expected = ["pdas", "pdas[max_iterations=8.01e2]"];
         assert_eq!(names, expected.map(|name| (name.to_owned(), "r")));
-    }
-
-    #[test]
-    fn numbered_problems_of_a_seed_are_one_class() {
-        for (case, expected) in [
-            ("random-2d-seed-1-003", "random-2d-seed-1"),
-            ("bodies-3d-00100-seed-1-4", "bodies-3d-00100-seed-1"),
-            ("plate_mesh1", "plate_mesh1"),
-            ("plate-2", "plate-2"),
-        ] {
-            assert_eq!(class(case), expected);
-        }
     }
 }
