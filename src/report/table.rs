@@ -148,11 +148,14 @@ pub fn readable<R: Row>(rows: &[R], note: &str) -> Readable {
     }
 }
 
-/// Adds a table in its forms as files.
+/// Adds a table in its forms as files; of nothing there is none.
 ///
 /// # Errors
 /// Those of [`csv`] and [`Bundle::add`].
 pub fn add<R: Row>(bundle: &mut Bundle, rows: &[R], note: &str) -> Result<(), ReportError> {
+    if rows.is_empty() {
+        return Ok(());
+    }
     let read = R::READABLE.then(|| readable(rows, note));
     add_forms(bundle, R::NAME, csv(rows)?, read)
 }

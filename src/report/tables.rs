@@ -18,7 +18,7 @@ use problems::ProblemRow;
 use ranks::{AccuracyRow, PointRow, RankingRow};
 use runs::{DeviationRow, RunRow};
 
-use super::table::{self, Description, Row};
+use super::table::{Description, Row, add};
 use super::{Bundle, ReportError};
 use crate::studies::analysis::accuracy::refinements;
 use crate::studies::analysis::causes::{CauseRow, StoppingRow, causes, stopping};
@@ -140,14 +140,6 @@ pub struct OfStudy {
     pub about: Description,
     /// Adds it.
     pub add: Add,
-}
-
-/// Adds a table; of nothing there is none.
-fn add<R: Row>(bundle: &mut Bundle, rows: &[R], caveat: &str) -> Result<(), ReportError> {
-    match rows {
-        [] => Ok(()),
-        _ => table::add(bundle, rows, caveat),
-    }
 }
 
 /// Adds what is made of records, with a caveat for the heading.

@@ -156,7 +156,8 @@ fn verdicts_that_are_not_honest_have_no_error() {
     }
     let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let names: Vec<String> = bundle.unwrap().paths().map(str::to_owned).collect();
-    assert_eq!(names, FILES);
+    // Nothing converges, so no order is written.
+    assert_eq!(names, ["convergence.csv", "provenance.toml"]);
 }
 
 #[test]
