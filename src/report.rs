@@ -20,7 +20,6 @@ pub mod table;
 pub mod tables;
 pub mod vtu;
 
-use crate::case::Case;
 pub use crate::files::bundle::Bundle;
 pub use crate::files::claim::Claim;
 pub use crate::files::claim::{Plan, plan};
@@ -39,12 +38,6 @@ pub fn add_input(
         bundle.add(format!("input/{name}"), text)?;
     }
     Ok(())
-}
-
-/// The texts of some cases with the names of their files.
-pub fn texts(cases: &[Case]) -> impl Iterator<Item = (String, String)> {
-    let text = |case: &Case| (format!("{}.toml", case.name), case.source.clone());
-    cases.iter().map(text)
 }
 
 /// Adds `provenance.toml`.

@@ -5,8 +5,9 @@ use super::error::CliError;
 use super::output::{say, show, warn};
 use super::progress::Bar;
 use crate::case::{ContactSpace, Tip};
-use crate::report::{Plan, Provenance, add_input, texts};
+use crate::report::{Plan, Provenance, add_input};
 use crate::run::choice::Choice;
+use crate::studies::axes::Subject;
 use crate::studies::convergence::{self, ConvergencePlan, orders};
 use crate::studies::tips::tip_named;
 
@@ -77,7 +78,7 @@ pub fn run(arguments: Arguments, whole: Plan) -> Result<bool, CliError> {
     let provenance = Provenance::collect(rayon::current_num_threads())
         .with_option("method", plan.choice.label.clone());
     let mut bundle = crate::report::convergence::bundle(&errors, &orders, &provenance)?;
-    add_input(&mut bundle, texts(&cases))?;
+    add_input(&mut bundle, Subject::texts(&cases))?;
     claim.commit(&bundle)?;
     show(&orders, "");
     let failed = || samples.iter().filter(|s| !s.verdict.is_honest());

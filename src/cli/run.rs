@@ -6,8 +6,9 @@ use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, 
 use super::error::CliError;
 use super::output::conclude;
 use super::progress::Bar;
-use crate::report::{Plan, add_input, page, standard, texts};
+use crate::report::{Plan, add_input, page, standard};
 use crate::run::choice::choices;
+use crate::studies::axes::Subject;
 use crate::studies::cases::{Fields, Settings, Why, run_case};
 use crate::studies::expect;
 use crate::studies::results::Results;
@@ -87,7 +88,7 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     }
     bar.finish();
     let mut bundle = standard::bundle(&results, &provenance_with(settings, &given))?;
-    add_input(&mut bundle, texts(&cases))?;
+    add_input(&mut bundle, Subject::texts(&cases))?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
     Ok(conclude(&results, claim.dir()))

@@ -39,6 +39,12 @@ pub struct Axes {
 }
 
 impl Subject {
+    /// The texts of cases with the names of their files.
+    pub fn texts(cases: &[Case]) -> Vec<(String, String)> {
+        let all = cases.iter().map(Self::of);
+        all.filter_map(|own| own.text()).collect()
+    }
+
     /// Text of the case with the name of its file; none of a problem file.
     pub fn text(&self) -> Option<(String, String)> {
         match &*self.matter {

@@ -1,6 +1,5 @@
 //! The program as its users meet it: verbs, exit codes, files, silence in a pipe.
 
-use std::collections::BTreeMap;
 use std::process::{Command, Stdio};
 
 use crate::common::*;
@@ -296,19 +295,6 @@ fn the_main_job_is_what_runs_without_a_verb() {
     }
 }
 
-/// What else belongs to the machine and the moment.
-const SPENT: [&str; 2] = ["repetitions", "peak_mb"];
-
-/// A table without its columns of times.
-fn without_times(table: &[u8]) -> Vec<BTreeMap<String, String>> {
-    let mut rows = csv_rows(&text(table));
-    let times = |row: &BTreeMap<String, String>| row.keys().filter(|k| k.ends_with("_s")).count();
-    assert!(rows.iter().all(|row| times(row) == 14));
-    rows.iter_mut()
-        .for_each(|row| row.retain(|k, _| !k.ends_with("_s") && !SPENT.contains(&k.as_str())));
-    rows
-}
-
 #[test]
 fn the_same_command_twice_writes_the_same_files_but_for_times() {
     let dir = folder(0.0);
@@ -320,8 +306,7 @@ fn the_same_command_twice_writes_the_same_files_but_for_times() {
     assert!(one.keys().eq(two.keys()));
     for (name, content) in &one {
         match name.as_str() {
-            "runs.csv" => assert_eq!(without_times(content), without_times(&two[name])),
-            // Times and the machine.
+            "runs.csv" => assert_eq!(without_times(content), without_times(&two[name])), // Times and the machine.
             "provenance.toml" | "runs.md" | "runs.tex" | "index.html" | "written.toml" => {}
             _ => assert!(content == &two[name], "{name} differs"),
         }

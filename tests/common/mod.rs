@@ -361,6 +361,17 @@ pub fn csv_rows(text: &str) -> Vec<BTreeMap<String, String>> {
     reader.deserialize().map(Result::unwrap).collect()
 }
 
+/// Rows of `runs.csv` without what belongs to the machine and the moment.
+pub fn without_times(file: &[u8]) -> Vec<BTreeMap<String, String>> {
+    let mut rows = csv_rows(std::str::from_utf8(file).unwrap());
+    for row in &mut rows {
+        let count = row.len();
+        row.retain(|name, _| !name.ends_with("_s") && name != "repetitions" && name != "peak_mb");
+        assert_eq!(count - row.len(), 14 + 2);
+    }
+    rows
+}
+
 /// Files below a folder, by relative path.
 pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();

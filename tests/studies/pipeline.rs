@@ -168,6 +168,8 @@ fn an_id_means_bits() {
         let of = |out: &str| fs::read(dir.path().join(format!("{out}/{table}.csv"))).unwrap();
         assert!(of("whole") == of("all"), "{table}");
     }
+    let runs = |out: &str| without_times(&fs::read(dir.path().join(out).join("runs.csv")).unwrap());
+    assert_eq!(runs("whole"), runs("all"));
 }
 
 /// A few tasks of milliseconds.

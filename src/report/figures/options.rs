@@ -66,13 +66,8 @@ fn factor(sweep: &Sweep, step: &Step) -> f64 {
 }
 
 fn name(sweep: &Sweep) -> String {
-    let Sweep {
-        method,
-        option,
-        tolerance,
-        ..
-    } = sweep;
-    plain(&format!("{}, {option}, {tolerance:e}", base(method)))
+    let (method, option) = (base(&sweep.method), sweep.option);
+    plain(&format!("{method}, {option}, {:e}", sweep.tolerance))
 }
 
 fn cell(sweep: &Sweep, step: Option<&Step>) -> Cell {

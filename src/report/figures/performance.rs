@@ -20,7 +20,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// A tier in headings.
-pub fn heading(tier: Tier) -> String {
+fn heading(tier: Tier) -> String {
     let tolerance = significant(tier.tolerance(), 1);
     format!("tier {tier}: natural map ≤ {tolerance}")
 }

@@ -66,8 +66,7 @@ fn panel(own: &[&Sample<'_>], further: &[&str], vertical: Axis, quantity: Quanti
     let groups: Vec<&[&Sample]> = own.chunk_by(|a, b| a.method == b.method).collect();
     let names: Vec<&str> = groups.iter().map(|group| group[0].method).collect();
     for (group, (label, style)) in groups.iter().zip(looks(&names, further)) {
-        let size: Quantity = |s| s.points as f64;
-        let points = medians(group.iter().copied(), size, |s| s.unknowns, quantity);
+        let points = medians(group, quantity);
         panel.series.push(Series::new(label, style, points));
     }
     panel

@@ -77,21 +77,19 @@ fn asked(record: &Record) -> Option<usize> {
     bodies::points_of(&cell.case).filter(|_| fits)
 }
 
-/// Medians of y over those with the same x, by x.
-pub fn medians<'s>(
-    samples: impl Iterator<Item = &'s Sample<'s>> + Clone,
-    same: impl Fn(&Sample<'_>) -> f64,
-    x: Quantity,
-    y: Quantity,
-) -> Vec<[f64; 2]> {
-    let mut groups: Vec<f64> = samples.clone().map(&same).collect();
-    groups.sort_by(f64::total_cmp);
-    groups.dedup();
-    let point = |group: f64| {
-        let own = samples.clone().filter(|s| same(s) == group);
-        [median(own.clone().map(x)), median(own.map(y))]
+/// Medians of a quantity by size, over the medians of the contact unknowns.
+pub fn medians(samples: &[&Sample<'_>], quantity: Quantity) -> Vec<[f64; 2]> {
+    let mut sizes: Vec<usize> = samples.iter().map(|s| s.points).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let point = |size: usize| {
+        let own = || samples.iter().filter(move |s| s.points == size);
+        [
+            median(own().map(|s| s.unknowns)),
+            median(own().map(|s| quantity(s))),
+        ]
     };
-    let points = groups.into_iter().map(point);
+    let points = sizes.into_iter().map(point);
     points.filter(|p| p[1].is_finite()).collect()
 }
 
