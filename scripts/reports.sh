@@ -40,15 +40,15 @@ for part in $parts; do
         keep)
             # Written by hand: other programs on the same problems.
             find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
-            keep . table1 table2 converged penalty convergence.csv comparison.csv \
+            keep . table1 table2 orders penalty convergence.csv comparison.csv \
                 expectations_by_case cost.svg \
-                'beam_model1.6x18x9.edge-pairs.*.mu-0.1.contact.svg' 'penny_crack.*.contact.svg' \
+                'beam_model1.6x18x9.edge-pairs.*.mu-0.1.state.svg' 'penny_crack.*.state.svg' \
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
-                'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.displacement.svg'
+                'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.state.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
-            keep stress stress_faults stress_invariances stress_ladders success stress_scenes.csv success.svg
+            keep stress stress_scenes stress_invariances stress_ladders success success.svg
             cp -r results/stress/cases reports/stress/
-            keep random success causes stopping why.csv success.svg
+            keep random success causes stopping success.svg
             keep sensitivity options options.svg
             keep study ranking scaling success runs.csv profile.time.svg 'scaling.*.svg' \
                 'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'

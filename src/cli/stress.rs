@@ -113,7 +113,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     let total: u64 = suite.scenes.values().sum();
     let provenance =
         Provenance::collect(workers.lab.jobs).with_option("seed", suite.seed.to_string());
-    let mut bundle = report::bundle(suite.seed, &findings, &provenance)?;
+    let mut bundle = report::bundle(&findings, &provenance)?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
     show(&summary::faults(&findings), "");

@@ -26,7 +26,7 @@ use super::tables::Chapter;
 pub use kind::Kind;
 
 /// All kinds with the chapter they belong to, in the order of the page.
-pub static CATALOGUE: [(Chapter, &Kind); 15] = [
+pub static CATALOGUE: [(Chapter, &Kind); 14] = [
     (Chapter::Methods, &cost::KIND),
     (Chapter::Study, &success::KIND),
     (Chapter::Study, &scaling::CLASSES),
@@ -37,8 +37,7 @@ pub static CATALOGUE: [(Chapter, &Kind); 15] = [
     (Chapter::Study, &performance::KIND),
     (Chapter::Study, &stages::KIND),
     (Chapter::Accuracy, &error::KIND),
-    (Chapter::Runs, &fields::CONTACT),
-    (Chapter::Runs, &fields::DISPLACEMENT),
+    (Chapter::Runs, &fields::KIND),
     (Chapter::Runs, &residual::KIND),
     (Chapter::Runs, &profile::KIND),
     (Chapter::Runs, &friction_loop::KIND),

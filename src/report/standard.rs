@@ -48,8 +48,9 @@ pub fn add_tables(bundle: &mut Bundle, results: &Results) -> Result<(), ReportEr
     table::add(bundle, &results.increments(), "")?;
     table::add(bundle, &results.quantities(), "")?;
     table::add(bundle, &results.history(), "")?;
-    table::add(bundle, &results.points(), "")?;
-    table::add(bundle, &results.exact, "")?;
+    let mut points = results.points();
+    points.extend(results.exact_points());
+    table::add(bundle, &points, "")?;
     table::add(bundle, &results.expectations, "")?;
     table::add(bundle, &ExpectSummary::of(&results.expectations), "")
 }

@@ -5,15 +5,11 @@ use crate::studies::analysis::success::success;
 use crate::studies::stress::finding::Finding;
 use crate::studies::stress::summary;
 
-/// Faults, invariances, success of the methods, ladders, scenes, the smallest failing cases, provenance.
+/// Faults, invariances, success of the methods, ladders, the smallest failing cases, provenance.
 ///
 /// # Errors
 /// Those of [`table::add`].
-pub fn bundle(
-    seed: u64,
-    findings: &[Finding],
-    provenance: &Provenance,
-) -> Result<Bundle, ReportError> {
+pub fn bundle(findings: &[Finding], provenance: &Provenance) -> Result<Bundle, ReportError> {
     let mut bundle = Bundle::new();
     table::add(&mut bundle, &summary::faults(findings), "")?;
     table::add(&mut bundle, &summary::invariances(findings), "")?;
@@ -21,7 +17,6 @@ pub fn bundle(
     table::add(&mut bundle, &success(&records), "")?;
     figures::success::add(&mut bundle, &success(&records), "")?;
     table::add(&mut bundle, &summary::of_ladders(findings), "")?;
-    table::add(&mut bundle, &summary::scenes(seed, findings), "")?;
     for finding in findings {
         if let (Some(name), Some(text)) = (summary::minimal(finding), &finding.minimal) {
             let fault = finding.fault.map_or("right", |fault| fault.name());

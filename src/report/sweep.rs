@@ -1,7 +1,6 @@
 //! Records of a sweep as tables and figures.
 //!
-//! Files that hold no times are the same on every machine: `increments.csv`, `deviations.csv`,
-//! `success.*`, `options.*`. All others belong to the machine. Times stand beside honest verdicts only, see
+//! Files that hold no times are the same on every machine: `increments.csv`, `success.*`, `options.*`. All others belong to the machine. Times stand beside honest verdicts only, see
 //! [`published_times`](crate::studies::analysis::published_times).
 
 use std::collections::BTreeSet;

@@ -12,11 +12,10 @@ pub mod runs;
 pub mod stress;
 mod words;
 
-use causes::WhyRow;
 use options::OptionRow;
 use problems::ProblemRow;
-use ranks::{AccuracyRow, PointRow, RankingRow};
-use runs::{DeviationRow, RunRow};
+use ranks::{PointRow, RankingRow};
+use runs::RunRow;
 
 use super::table::{Description, Row, add};
 use super::{Bundle, ReportError};
@@ -27,12 +26,11 @@ use crate::studies::analysis::scaling::{Growth, growth};
 use crate::studies::analysis::success::{SuccessRow, success};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
 use crate::studies::paper::comparison::ComparisonRow;
-use crate::studies::paper::converged_reactions::ConvergedRow;
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::record::Record;
-use crate::studies::rows::{self, ExactRow, ExpectRow, HistoryRow, IncrementRow, QuantityRow};
-use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, SceneRow};
+use crate::studies::rows::{self, ExpectRow, HistoryRow, IncrementRow, QuantityRow};
+use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow};
 
 /// What a table or figure is about: a section of the page, a chapter of `stickslip show schema`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -156,7 +154,7 @@ fn table<R: Row>(chapter: Chapter, add: Add) -> OfStudy {
 
 /// The tables of a study, in the order of the page: a new one is its file and a line here.
 pub fn of_study() -> Vec<OfStudy> {
-    use Chapter::{Runs, Study};
+    use Chapter::{Accuracy, Runs, Study};
     vec![
         table::<RankingRow>(Study, |to, of, caveat| {
             add(to, &ranks::rankings(of), caveat)
@@ -164,17 +162,13 @@ pub fn of_study() -> Vec<OfStudy> {
         table::<Growth>(Study, |to, of, caveat| add(to, &growth(of), caveat)),
         table::<SuccessRow>(Study, |to, of, caveat| add(to, &success(of), caveat)),
         table::<CauseRow>(Study, |to, of, caveat| add(to, &causes(of), caveat)),
-        table::<WhyRow>(Study, |to, of, caveat| add(to, &WhyRow::all(of), caveat)),
         table::<StoppingRow>(Study, |to, of, caveat| add(to, &stopping(of), caveat)),
         table::<OptionRow>(Study, |to, of, caveat| {
             add(to, &OptionRow::of(&sweeps(of)), caveat)
         }),
         table::<PointRow>(Study, |to, of, _| add(to, &ranks::curves(of), "")),
-        table::<AccuracyRow>(Study, |to, of, _| {
-            let meshes = refinements(of);
-            let errors = meshes
-                .iter()
-                .flat_map(|one| one.errors.iter().map(AccuracyRow));
+        table::<ErrorRow>(Accuracy, |to, of, _| {
+            let errors = refinements(of).into_iter().flat_map(|one| one.errors);
             add(to, &errors.collect::<Vec<_>>(), "")
         }),
         table::<RunRow>(Runs, |to, of, _| {
@@ -184,7 +178,6 @@ pub fn of_study() -> Vec<OfStudy> {
             let rows = of.iter().flat_map(IncrementRow::of);
             add(to, &rows.collect::<Vec<_>>(), "")
         }),
-        table::<DeviationRow>(Runs, |to, of, _| add(to, &DeviationRow::all(of), "")),
         table::<ProblemRow>(Study, |to, of, caveat| {
             add(to, &problems::of_files(of), caveat)
         }),
@@ -199,7 +192,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
     let paper = vec![
         Description::of::<Table1Row>(),
         Description::of::<Table2Row>(),
-        Description::of::<ConvergedRow>(),
         Description::of::<PenaltyRow>(),
     ];
     let methods = vec![Description::of::<ComparisonRow>()];
@@ -214,9 +206,10 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<FaultRow>(),
         Description::of::<InvarianceRow>(),
         Description::of::<LadderRow>(),
-        Description::of::<SceneRow>(),
     ];
-    let accuracy = vec![Description::of::<OrderRow>(), Description::of::<ErrorRow>()];
+    let accuracy = of_chapter(Chapter::Accuracy)
+        .chain([Description::of::<OrderRow>()])
+        .collect();
     let benchmarks = vec![peers::peers()];
     let expected = vec![
         Description::of::<details::ExpectSummary>(),
@@ -226,7 +219,6 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         Description::of::<QuantityRow>(),
         Description::of::<HistoryRow>(),
         Description::of::<rows::PointRow>(),
-        Description::of::<ExactRow>(),
     ];
     let runs = of_chapter(Chapter::Runs).chain(details).collect();
     of(Chapter::Paper, paper)

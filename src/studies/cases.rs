@@ -7,7 +7,7 @@ use crate::run::choice::{Choice, choices};
 use crate::run::progress::Progress;
 use crate::run::verdict::Accuracy;
 use crate::studies::axes::{Axes, Subject, named};
-use crate::studies::exact_curve::exact_rows;
+use crate::studies::exact_curve::exact_points;
 use crate::studies::expect::{self, expectation_rows};
 use crate::studies::measure::{Bench, RunError, here};
 use crate::studies::results::Results;
@@ -107,7 +107,7 @@ pub fn run_case(
             if let Some((case, loading)) = scene.body()
                 && Some(&task.asked.refine) == case.sweep.refine.first()
             {
-                let own = exact_rows(case, loading, task.asked.mu());
+                let own = exact_points(case, loading, task.asked.mu());
                 results.exact.extend(own);
             }
         },

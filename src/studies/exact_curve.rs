@@ -14,7 +14,8 @@ use stickslip_xfem::cut::placement::cells_at;
 
 use crate::case::Case;
 use crate::model::loading::Loading;
-use crate::studies::rows::ExactRow;
+use crate::model::quantities::PointState;
+use crate::studies::rows::{ExactPoint, RunKey};
 
 /// Intervals N of the curve: half a millimetre at most on a figure of 85 mm.
 const INTERVALS: usize = 160;
@@ -22,11 +23,14 @@ const INTERVALS: usize = 160;
 /// Distance of the first and the last place from the ends, in lengths of the crack.
 const INSIDE: f64 = 1e-12;
 
+/// Stands for the method.
+const EXACT: &str = "exact";
+
 /// Tractions and jumps below this fraction of the largest are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 /// The closed form along a 2D crack at the end of every increment, time 0 included where a run begins there; nothing where the case names none, or in a solid.
-pub fn exact_rows(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<ExactRow> {
+pub fn exact_points(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<ExactPoint> {
     let mesh = &loading.body().mesh;
     let Some(spec) = case.cracks.first().filter(|_| case.exact.is_some()) else {
         return Vec::new();
@@ -50,36 +54,59 @@ pub fn exact_rows(case: &Case, loading: &Loading<'_>, friction: f64) -> Vec<Exac
     let rows = increments.flat_map(|(increment, field)| {
         places.iter().map(move |(s, x)| {
             let (traction, jump) = (field.traction(x), field.jump(x));
-            ExactRow {
-                case: case.name.clone(),
-                friction,
-                increment,
-                crack: 1,
-                s_m: *s,
-                x_m: x[0],
-                y_m: x[1],
-                gap_m: jump[0],
-                slip_a_m: jump[1],
-                p_n_pa: traction[0],
-                p_a_pa: traction[1],
+            ExactPoint {
+                key: key(&case.name, friction, increment),
+                point: point(*s, x, jump, traction),
             }
         })
     });
-    let finite = |row: &ExactRow| {
-        let values = [row.gap_m, row.slip_a_m, row.p_n_pa, row.p_a_pa];
+    let finite = |ExactPoint { point, .. }: &ExactPoint| {
+        let values = [point.gap_m, point.slip_a_m, point.p_n, point.p_a];
         values.iter().all(|value| value.is_finite())
     };
-    let mut rows: Vec<ExactRow> = rows.filter(finite).collect();
+    let mut rows: Vec<ExactPoint> = rows.filter(finite).collect();
     forget_round_off(&mut rows);
     rows
 }
 
+fn key(case: &str, friction: f64, increment: usize) -> RunKey {
+    RunKey {
+        case: case.to_owned(),
+        mesh: String::new(),
+        space: String::new(),
+        method: EXACT.into(),
+        friction,
+        increment,
+    }
+}
+
+/// A place at the distance `s` from the first end, with the jump and the traction (normal, tangential) of the closed form.
+fn point(s: f64, x: &[f64], jump: [f64; 3], traction: [f64; 3]) -> PointState {
+    PointState {
+        crack: 1,
+        number: 0,
+        x_m: x[0],
+        y_m: x[1],
+        z_m: 0.0,
+        s_m: s,
+        weight: 1.0,
+        gap_m: jump[0],
+        slip_a_m: jump[1],
+        slip_b_m: 0.0,
+        p_n: traction[0],
+        p_a: traction[1],
+        p_b: 0.0,
+        force_unit: "Pa".into(),
+        status: String::new(),
+    }
+}
+
 /// Makes round-off zero: it would differ between machines.
-fn forget_round_off(rows: &mut [ExactRow]) {
-    type Pair = fn(&mut ExactRow) -> [&mut f64; 2];
+fn forget_round_off(rows: &mut [ExactPoint]) {
+    type Pair = fn(&mut ExactPoint) -> [&mut f64; 2];
     let pairs: [Pair; 2] = [
-        |row| [&mut row.gap_m, &mut row.slip_a_m],
-        |row| [&mut row.p_n_pa, &mut row.p_a_pa],
+        |row| [&mut row.point.gap_m, &mut row.point.slip_a_m],
+        |row| [&mut row.point.p_n, &mut row.point.p_a],
     ];
     for pair in pairs {
         let largest = rows.iter_mut().flat_map(pair).map(|v| v.abs());
@@ -98,18 +125,10 @@ mod tests {
 
     #[test]
     fn round_off_beside_large_values_is_zero() {
-        let row = |gap_m, p_a_pa| ExactRow {
-            case: "case".into(),
-            friction: 0.1,
-            increment: 1,
-            crack: 1,
-            s_m: 0.5,
-            x_m: 0.5,
-            y_m: 0.0,
-            gap_m,
-            slip_a_m: -1e-5,
-            p_n_pa: 1e7,
-            p_a_pa,
+        let row = |gap, shear| {
+            let point = point(0.5, &[0.5, 0.0], [gap, -1e-5, 0.0], [1e7, shear, 0.0]);
+            let key = key("case", 0.1, 1);
+            ExactPoint { key, point }
         };
         let mut rows = vec![row(9e-18, 9e-6), row(-2e-17, 2e-5)];
         forget_round_off(&mut rows);

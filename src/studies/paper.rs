@@ -15,11 +15,11 @@ pub use lookup::{PaperError, as_printed};
 use crate::case::shipped;
 use crate::run::progress::Progress;
 use crate::studies::cases::{Fields, Settings, run_case};
-use crate::studies::convergence::orders::ErrorRow;
+use crate::studies::convergence::orders::{ErrorRow, OrderRow};
 use crate::studies::record::Record;
 use crate::studies::results::Results;
 
-use converged_reactions::{ConvergedRow, converged_reactions};
+use converged_reactions::converged_reactions;
 use lookup::{case, choice};
 use penalty::{PenaltyRow, penalty_rows};
 use printed_tables::{PAPER_METHODS, Table1Row, Table2Row, beam_difference, beam_rows, plate_rows};
@@ -58,7 +58,7 @@ pub struct Paper {
     /// Reactions of the plate under refinement: by edge pairs, and by star multipliers if they were asked for.
     pub convergence: Vec<ErrorRow>,
     /// The finest ones beside the printed numbers.
-    pub converged: Vec<ConvergedRow>,
+    pub converged: Vec<OrderRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
     /// Plate and beam by variants of the methods, if they were asked for.

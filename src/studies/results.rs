@@ -3,7 +3,7 @@
 use crate::studies::measure::Answer;
 use crate::studies::record::Record;
 use crate::studies::rows::{
-    ExactRow, ExpectRow, HistoryRow, IncrementRow, PointRow, QuantityRow, RunFields, RunKey,
+    ExactPoint, ExpectRow, HistoryRow, IncrementRow, PointRow, QuantityRow, RunFields, RunKey,
     recorded_iterations,
 };
 
@@ -13,7 +13,7 @@ pub struct Results {
     /// The runs.
     pub answers: Vec<Answer>,
     /// Closed forms of their cases.
-    pub exact: Vec<ExactRow>,
+    pub exact: Vec<ExactPoint>,
     /// Expected numbers.
     pub expectations: Vec<ExpectRow>,
 }
@@ -34,7 +34,7 @@ impl Results {
         let wanted = |name: &str| names.contains(&name);
         Self {
             answers: part(&self.answers, |own| wanted(&own.record.asked.case)),
-            exact: part(&self.exact, |row| wanted(&row.case)),
+            exact: part(&self.exact, |row| wanted(&row.key.case)),
             expectations: part(&self.expectations, |row| wanted(&row.key.case)),
         }
     }
@@ -93,6 +93,14 @@ impl Results {
             })
         })
         .collect()
+    }
+
+    /// Places of the closed forms.
+    pub fn exact_points(&self) -> impl Iterator<Item = PointRow<'_>> {
+        self.exact.iter().map(|ExactPoint { key, point }| PointRow {
+            key: key.clone(),
+            point,
+        })
     }
 
     /// Fields of the runs whose fields were kept.

@@ -144,31 +144,14 @@ pub struct PointRow<'a> {
     pub point: &'a PointState,
 }
 
-/// One row of `exact.csv`: the closed form of a case at a place along its crack; 2D only.
+/// A place along a crack of a closed form, 2D only: as a contact point of weight 1 by the method `exact`, so that its forces are
+/// tractions [Pa].
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExactRow {
-    /// Case name.
-    pub case: String,
-    /// Friction coefficient.
-    pub friction: f64,
-    /// Increment, as in [`RunKey`].
-    pub increment: usize,
-    /// Crack number, from 1.
-    pub crack: usize,
-    /// Distance along the crack from its first point [m].
-    pub s_m: f64,
-    /// Position [m].
-    pub x_m: f64,
-    /// Position [m].
-    pub y_m: f64,
-    /// Normal gap, open > 0 [m].
-    pub gap_m: f64,
-    /// Tangential jump along a, total [m].
-    pub slip_a_m: f64,
-    /// Contact traction along n on side 1, compression > 0 [Pa].
-    pub p_n_pa: f64,
-    /// Contact traction along a on side 1 [Pa].
-    pub p_a_pa: f64,
+pub struct ExactPoint {
+    /// Case, friction coefficient and increment; mesh and space are empty.
+    pub key: RunKey,
+    /// What the closed form has there.
+    pub point: PointState,
 }
 
 /// The fields of one run: last increment at least, all increments for `.pvd`.

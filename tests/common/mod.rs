@@ -340,7 +340,7 @@ pub fn assert_below(found: f64, bound: f64, at: impl Debug) {
 
 /// Runs the program in a folder: exit code, standard output, standard error.
 pub fn stickslip(arguments: &[&str], dir: &Path) -> (i32, String, String) {
-    let mut program = assert_cmd::Command::cargo_bin("stickslip").unwrap();
+    let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"));
     let output = program.args(arguments).current_dir(dir).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     let code = output.status.code().unwrap();

@@ -167,30 +167,42 @@ fn measure(body: &Body, space: ContactSpace, h: f64) -> Found {
             .all(|&i| kind(i) == FunctionKind::Standard)
     );
     let masses = mass(&body.integrator());
-    // In the basis of the solver: branch functions within a radius are not independent as they stand. Each of its vectors
-    // has few entries, which a product of dense matrices would not see.
-    let mut basis = vec![Vec::new(); n];
-    for i in 0..n {
-        (body.basis.column(dim, i).into_iter()).for_each(|(p, s)| basis[p].push((i, s)));
-    }
-    let kept = (0..n).filter(|&i| !body.basis.drops(dim, i));
-    let basis: Vec<Vec<(usize, f64)>> = kept.map(|i| std::mem::take(&mut basis[i])).collect();
-    let dot = |b: &[(usize, f64)], v: &[f64]| b.iter().map(|&(i, s)| s * v[i]).sum::<f64>();
-    let mut a = Mat::zeros(basis.len(), basis.len());
-    for (j, vector) in basis.iter().enumerate() {
-        let mut b = vec![0.0; n];
-        vector.iter().for_each(|&(i, s)| b[i] = s);
-        let (k, m) = (body.stiffness.mul(&b), masses.mul(&b));
-        let image: Vec<f64> = k.iter().zip(&m).map(|(k, m)| k + m).collect();
-        (basis.iter().enumerate()).for_each(|(i, b)| a[(i, j)] = dot(b, &image));
+    // In the basis of the solver: branch functions within a radius are not independent as they stand. An unknown as the sum of
+    // the few of its vectors that it is part of.
+    let kept: Vec<usize> = (0..n).filter(|&i| !body.basis.drops(dim, i)).collect();
+    let mut numbers = vec![None; n];
+    (kept.iter().enumerate()).for_each(|(number, &i)| numbers[i] = Some(number));
+    let count = kept.len();
+    let vectors = |i| -> Vec<(usize, f64)> {
+        let parts = body.basis.column(dim, i).into_iter();
+        parts.filter_map(|(p, s)| Some((numbers[p]?, s))).collect()
+    };
+    let basis: Vec<Vec<(usize, f64)>> = (0..n).map(vectors).collect();
+    let mut a: Mat<f64> = Mat::zeros(count, count);
+    let all: Vec<Option<u32>> = (0..n as u32).map(Some).collect();
+    for matrix in [&body.stiffness, &masses] {
+        let (starts, rows, values) = matrix.restrict(&all);
+        for j in 0..n {
+            for k in starts[j]..starts[j + 1] {
+                let (i, value) = (rows[k], values[k]);
+                for &(p, s) in &basis[i] {
+                    for &(q, t) in &basis[j] {
+                        a[(p, q)] += s * value * t;
+                        if i != j {
+                            a[(q, p)] += s * value * t;
+                        }
+                    }
+                }
+            }
+        }
     }
     let rows = body.jump_rows.len();
-    let mut g = Mat::zeros(rows, basis.len());
+    let mut g: Mat<f64> = Mat::zeros(rows, count);
     for (i, row) in body.jump_rows.iter().enumerate() {
-        let mut functional = vec![0.0; n];
-        row.iter()
-            .for_each(|&(j, v)| functional[j] += v * body.points[i / dim].weight);
-        (basis.iter().enumerate()).for_each(|(j, b)| g[(i, j)] = dot(b, &functional));
+        for &(j, v) in row {
+            let force = v * body.points[i / dim].weight;
+            basis[j].iter().for_each(|&(p, s)| g[(i, p)] += s * force);
+        }
     }
     let s = &g * a.llt(Side::Lower).unwrap().solve(g.transpose());
     // Scaled, S x = λ C x is L⁻¹ S L⁻ᵀ y = λ y with C = L Lᵀ: multipliers of slivers are small.

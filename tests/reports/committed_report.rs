@@ -260,16 +260,16 @@ fn the_committed_tables_are_those_of_this_source() {
     assert!(compared > 500, "only {compared} cells");
 }
 
-/// Source: `converged.csv`, by `stickslip paper --full`. Goal: the reactions on the finest of three kinds of meshes agree within the
+/// Source: `orders.csv`, by `stickslip paper --full`. Goal: the reactions on the finest of three kinds of meshes agree within the
 /// smallest error bar, for each friction coefficient.
 #[test]
 fn the_converged_reactions_agree_whatever_the_mesh() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/converged.csv");
-    let table = Table::read(&std::fs::read(path).expect("converged.csv"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/orders.csv");
+    let table = Table::read(&std::fs::read(path).expect("orders.csv"));
     let number = |row: &[String], column| -> f64 { table.cell(row, column).parse().expect(column) };
     let mut groups: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
     for row in (table.rows.iter()).filter(|row| table.cell(row, "space") == "star") {
-        let found = ["reaction_mn_per_m", "error_bar_mn_per_m"].map(|column| number(row, column));
+        let found = ["reference", "error_bar"].map(|column| number(row, column));
         groups
             .entry(table.cell(row, "friction"))
             .or_default()

@@ -6,7 +6,6 @@ use std::fs;
 use std::path::Path;
 
 use crate::report_data::results;
-use assert_cmd::Command;
 use stickslip::report::figures::{cost, error};
 use stickslip::report::page::{self, Budget, Folder};
 use stickslip::report::{Claim, Provenance, plan, standard};
@@ -341,12 +340,9 @@ fn times_of_dishonest_runs_are_not_shown() {
 fn the_verb_writes_the_page_or_names_what_is_wrong() {
     let dir = folder(&[("out/table1.csv", TABLE1)]);
     let run = |arguments: &[&str]| {
-        let mut program = Command::cargo_bin("stickslip").expect("the program");
-        program
-            .args(arguments)
-            .current_dir(dir.path())
-            .output()
-            .expect("it runs")
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_stickslip"));
+        let program = program.args(arguments).current_dir(dir.path());
+        program.output().expect("it runs")
     };
     let output = run(&["show", "out"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");

@@ -6,7 +6,6 @@ use std::path::Path;
 use crate::report_data::results;
 use stickslip::case;
 use stickslip::report::table::{self, Row, readable};
-use stickslip::report::tables::causes::WhyRow;
 use stickslip::report::tables::runs::RunRow;
 use stickslip::report::{Bundle, Claim, Provenance, page, plan, standard};
 use stickslip::run::choice::Choice;
@@ -164,10 +163,6 @@ fn every_kind_stands_in_every_table() {
             read_back(penalty(known()), "verdict"),
             read_back(error(), "verdict"),
             read_back(RunRow(&record), "verdict"),
-            read_back(
-                WhyRow::all(std::slice::from_ref(&record)).swap_remove(0),
-                "verdict",
-            ),
         ] {
             assert_eq!(found, verdict);
         }

@@ -159,7 +159,7 @@ fn scenes_by_cause(copy: &Path, dir: &Path) -> BTreeMap<String, usize> {
         .arg(&out)
         .output()
         .unwrap();
-    let table = fs::read_to_string(out.join("stress_faults.csv"));
+    let table = fs::read_to_string(out.join("stress_scenes.csv"));
     let table = table.unwrap_or_else(|e| panic!("{e}: {run:?}"));
     let mut counts = BTreeMap::new();
     for row in csv_rows(&table) {

@@ -3,13 +3,14 @@
 use super::agreement::agreement;
 use super::kind::Kind;
 use super::runs::{Run, body, by_problem, friction, problem};
+use crate::model::quantities::PointState;
 use crate::report::names::file_name;
 use crate::report::number::significant;
 use crate::report::plot::{Axis, Figure, Panel, Series, Style, italic, plain, prefixed, rank};
 use crate::report::plot::{status_marker, subscript};
 use crate::report::{Bundle, ReportError};
 use crate::studies::results::Results;
-use crate::studies::rows::{ExactRow, IncrementRow, PointRow, RunKey};
+use crate::studies::rows::{ExactPoint, IncrementRow, PointRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What it is.
@@ -40,18 +41,13 @@ fn name(quantity: usize) -> String {
     }
 }
 
-fn found(row: &PointRow<'_>, quantity: usize) -> f64 {
-    let point = row.point;
+fn found(point: &PointState, quantity: usize) -> f64 {
     match quantity {
         0 => point.p_n / point.weight,
         1 => point.p_a.hypot(point.p_b) / point.weight,
         2 => point.slip_a_m,
         _ => point.gap_m,
     }
-}
-
-fn closed(row: &ExactRow, quantity: usize) -> f64 {
-    [row.p_n_pa, row.p_a_pa.abs(), row.slip_a_m, row.gap_m][quantity]
 }
 
 /// One figure per problem and crack with all methods that did what they claim, and per body and crack one with all friction
@@ -104,7 +100,7 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 struct Profile<'a> {
     runs: &'a [Run<'a, PointRow<'a>>],
     /// Closed forms by friction coefficient.
-    exact: BTreeMap<u64, Vec<&'a ExactRow>>,
+    exact: BTreeMap<u64, Vec<&'a ExactPoint>>,
     crack: usize,
     /// Round-off of a jump [m].
     round_off: f64,
@@ -122,19 +118,22 @@ fn left_by_tolerance(row: &IncrementRow<'_>) -> [f64; 2] {
 impl<'a> Profile<'a> {
     fn new(
         runs: &'a [Run<'a, PointRow<'a>>],
-        (exact, increments): (&'a [ExactRow], &[IncrementRow<'_>]),
+        (exact, increments): (&'a [ExactPoint], &[IncrementRow<'_>]),
         crack: usize,
     ) -> Self {
-        let mut curves: BTreeMap<u64, Vec<&ExactRow>> = BTreeMap::new();
-        for row in exact.iter().filter(|row| row.crack == crack) {
-            let of = (&row.case, row.friction, row.increment);
+        let mut curves: BTreeMap<u64, Vec<&ExactPoint>> = BTreeMap::new();
+        for row in exact.iter().filter(|row| row.point.crack == crack) {
+            let of = (&row.key.case, row.key.friction, row.key.increment);
             let own = |(key, _): &Run<'_, _>| of == (&key.case, key.friction, key.increment);
             if runs.iter().any(own) {
-                curves.entry(row.friction.to_bits()).or_default().push(row);
+                curves
+                    .entry(row.key.friction.to_bits())
+                    .or_default()
+                    .push(row);
             }
         }
         for curve in curves.values_mut() {
-            curve.sort_by(|a, b| a.s_m.total_cmp(&b.s_m));
+            curve.sort_by(|a, b| a.point.s_m.total_cmp(&b.point.s_m));
         }
         let rows = runs.iter().flat_map(|(_, rows)| rows);
         let length = rows.map(|row| row.point.s_m.abs()).fold(0.0, f64::max);
@@ -158,11 +157,12 @@ impl<'a> Profile<'a> {
         let jump = quantity >= 2;
         let mut exact = self.exact.values().flatten();
         let small = |row: &PointRow<'_>, [force, gap]: [f64; 2]| match jump {
-            true => found(row, quantity).abs() <= gap.max(self.round_off),
-            false => found(row, quantity).abs() * row.point.weight <= force,
+            true => found(row.point, quantity).abs() <= gap.max(self.round_off),
+            false => found(row.point, quantity).abs() * row.point.weight <= force,
         };
         let mut runs = self.runs.iter().zip(&self.left);
-        exact.all(|row| closed(row, quantity).abs() <= if jump { self.round_off } else { 0.0 })
+        exact
+            .all(|row| found(&row.point, quantity).abs() <= if jump { self.round_off } else { 0.0 })
             && runs.all(|((_, rows), left)| rows.iter().all(|row| small(row, *left)))
     }
 
@@ -173,9 +173,9 @@ impl<'a> Profile<'a> {
 
     fn largest(&self, quantity: usize) -> f64 {
         let exact = self.exact.values().flatten();
-        let exact = exact.map(|row| closed(row, quantity));
+        let exact = exact.map(|row| found(&row.point, quantity));
         let rows = self.runs.iter().flat_map(|(_, rows)| rows);
-        let values = rows.map(|row| found(row, quantity)).chain(exact);
+        let values = rows.map(|row| found(row.point, quantity)).chain(exact);
         let values = values.filter(|v| v.is_finite());
         values.fold(0.0, |largest, v| v.abs().max(largest))
     }
@@ -193,7 +193,7 @@ impl<'a> Profile<'a> {
             .max(self.round_off.max(f64::MIN_POSITIVE));
         let scale = [traction, traction, jump, jump];
         let values = |(_, rows): &Run<'_, PointRow<'_>>| -> Vec<f64> {
-            let of = |q: usize| rows.iter().map(move |row| found(row, q) / scale[q]);
+            let of = |q: usize| rows.iter().map(move |row| found(row.point, q) / scale[q]);
             (0..4).flat_map(of).collect()
         };
         let scaled: Vec<Vec<f64>> = self.runs.iter().map(values).collect();
@@ -262,13 +262,13 @@ impl<'a> Profile<'a> {
         for (index, (run, label, style)) in curves.iter().enumerate() {
             let (key, rows) = &self.runs[*run];
             if quantity == 1 && key.friction > 0.0 && (index == 0 || !band) {
-                let limit = |row: &PointRow<'_>| key.friction * found(row, 0).max(0.0);
+                let limit = |row: &PointRow<'_>| key.friction * found(row.point, 0).max(0.0);
                 let points = rows.iter().map(|row| [row.point.s_m, limit(row) * factor]);
                 let label = format!("slip limit {} {}", italic("μ"), name(0));
                 let series = Series::new(label, Style::limit(), points.collect());
                 panel.series.push(series);
             }
-            let value = |row: &PointRow<'_>| found(row, quantity) * factor;
+            let value = |row: &PointRow<'_>| found(row.point, quantity) * factor;
             let points = rows.iter().map(|row| [row.point.s_m, value(row)]);
             let mut series = Series::new(label, style.clone(), points.collect());
             // Marks that would lie on those of the first curve are left out, so that both can be seen.
@@ -288,7 +288,7 @@ impl<'a> Profile<'a> {
         for curve in self.exact.values() {
             let points = curve
                 .iter()
-                .map(|row| [row.s_m, closed(row, quantity) * factor]);
+                .map(|row| [row.point.s_m, found(&row.point, quantity) * factor]);
             let series = Series::new("closed form", Style::exact(), points.collect());
             panel.series.push(series);
         }

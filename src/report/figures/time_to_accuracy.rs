@@ -27,7 +27,8 @@ const ORDERS: [f64; 3] = [0.5, 1.0, 2.0];
 /// # Errors
 /// Those of drawing and of [`Bundle::add`].
 pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), ReportError> {
-    let all = refinements(records);
+    let mut all = refinements(records);
+    all.retain(|one| one.shown().1.is_some());
     // The name tells everything but the mesh.
     let meshless: Vec<Problem> = all.iter().map(|one| one.coarsest.without_mesh()).collect();
     for (one, name) in all.iter().zip(problem_names(&meshless)) {
@@ -41,9 +42,9 @@ pub fn add(bundle: &mut Bundle, records: &[Record], caveat: &str) -> Result<(), 
 }
 
 fn figure(one: &Refinement, caveat: &str) -> Figure {
-    let first = one.orders.first().map(|row| &row.finest);
-    let known = |row: &&ErrorRow| row.error >= ROUND_OFF;
-    let shown: Vec<&ErrorRow> = one.errors.iter().filter(known).collect();
+    let (mut shown, first) = one.shown();
+    let first = first.map(|row| &row.finest);
+    shown.retain(|row| row.error >= ROUND_OFF);
     let methods = distinct(shown.iter().map(|row| row.variant.method.as_str()));
     let finest = shown.iter().map(|row| row.refine).max();
     let total = |row: &ErrorRow| row.seconds.iter().sum::<f64>();

@@ -50,7 +50,7 @@ pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError
         return fail(DISPLACEMENT, "no finite values");
     };
     let scale = ((COLUMN - 6.0) / shown.width()).min(75.0 / shown.height());
-    let title = face.title();
+    let title = face.states.title();
     let factor = significant(solid.factor, 1);
     let head = Head::new(&title, &format!("{run}, deformation ×{factor}"), COLUMN);
     let bottom = head.height() + 2.0 + scale * shown.height();
@@ -96,11 +96,61 @@ pub fn contact_status(step: &FieldStep, run: &str) -> Result<String, ReportError
     canvas.finish(&format!("{title}: {run}"))
 }
 
+/// Open, stick or slip by point of the cracks: index in [`STATUS`].
+pub(super) struct States(Vec<usize>);
+
+impl States {
+    pub(super) fn new(crack: &FieldMesh) -> Result<Self, ReportError> {
+        let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
+        let status = status.map_or(&[][..], |(_, values)| values);
+        if status.len() != crack.points.len() {
+            let (found, points) = (status.len(), crack.points.len());
+            return fail("status", &format!("{found} values for {points} points"));
+        }
+        let index = |value: &f64| (*value as usize).min(STATUS.len() - 1);
+        Ok(Self(status.iter().map(index).collect()))
+    }
+
+    pub(super) fn tint(&self, point: usize) -> Rgb {
+        STATUS[self.0[point]].1
+    }
+
+    /// How much of the cracks is in which status, by points.
+    pub(super) fn title(&self) -> String {
+        let count = |index: usize| self.0.iter().filter(|s| **s == index).count();
+        let verbs = [(2, "slips"), (1, "sticks"), (0, "is open")];
+        let share = |n: usize| fixed(100.0 * n as f64 / self.0.len().max(1) as f64, 0);
+        let told = verbs.into_iter().filter(|(index, _)| count(*index) > 0);
+        let told: Vec<String> = told
+            .map(|(i, verb)| format!("{} % {verb}", share(count(i))))
+            .collect();
+        match &told[..] {
+            [_] => format!("The whole crack {}", told[0].trim_start_matches("100 % ")),
+            _ => format!("Of the crack {}", told.join(", ")),
+        }
+    }
+
+    /// What there is, in a row.
+    pub(super) fn legend(&self, canvas: &mut Canvas, [left, top]: [f64; 2], marked: bool) {
+        let mut x = left;
+        for (index, (name, tint)) in STATUS.into_iter().enumerate() {
+            if self.0.contains(&index) {
+                canvas.boxed([x, top - 1.6], [x + 6.0, top + 1.6], tint, 0.1);
+                if marked {
+                    let marker = status_marker(name);
+                    draw_marker(canvas, [x + 3.0, top], marker, MARKER_MM, BLACK);
+                }
+                canvas.text(name, [x + 7.5, top], TICK_PT, Anchor::Start, BLACK);
+                x += 19.0;
+            }
+        }
+    }
+}
+
 /// The crack surface with what is drawn on it.
 struct Face<'a> {
     crack: &'a FieldMesh,
-    /// Index in [`STATUS`] per point.
-    status: Vec<usize>,
+    states: States,
     /// Tangential vector per point.
     arrows: Vec<[f64; 3]>,
     /// Length of the longest.
@@ -111,12 +161,7 @@ struct Face<'a> {
 
 impl<'a> Face<'a> {
     fn new(crack: &'a FieldMesh, plane: &Plane) -> Result<Self, ReportError> {
-        let status = crack.point_scalars.iter().find(|(n, _)| n == "status");
-        let status = status.map_or(&[][..], |(_, values)| values);
-        if status.len() != crack.points.len() {
-            let (found, points) = (status.len(), crack.points.len());
-            return fail("status", &format!("{found} values for {points} points"));
-        }
+        let states = States::new(crack)?;
         let tangential = |name: &str| -> Result<Vec<[f64; 3]>, ReportError> {
             Ok(point_vector(crack, name)?
                 .iter()
@@ -143,7 +188,7 @@ impl<'a> Face<'a> {
             )
         };
         let tractions = longest(point_vector(crack, "contact_traction_pa")?);
-        let open = status.iter().all(|value| *value == 0.0);
+        let open = states.0.iter().all(|status| *status == 0);
         let noise = unit == "Pa" && (open || longest(&arrows) <= NO_TRACTION * tractions);
         let largest = if noise { 0.0 } else { longest(&arrows) };
         let (factor, unit) = prefixed(largest, unit);
@@ -151,29 +196,13 @@ impl<'a> Face<'a> {
             "{what}, longest {} {unit}",
             significant(largest * factor, 3)
         );
-        let index = |value: &f64| (*value as usize).min(STATUS.len() - 1);
         Ok(Self {
             crack,
-            status: status.iter().map(index).collect(),
+            states,
             arrows,
             largest,
             label,
         })
-    }
-
-    /// How much of the crack is in which status, by points.
-    fn title(&self) -> String {
-        let count = |index: usize| self.status.iter().filter(|s| **s == index).count();
-        let verbs = [(2, "slips"), (1, "sticks"), (0, "is open")];
-        let share = |n: usize| fixed(100.0 * n as f64 / self.status.len().max(1) as f64, 0);
-        let told = verbs.into_iter().filter(|(index, _)| count(*index) > 0);
-        let told: Vec<String> = told
-            .map(|(i, verb)| format!("{} % {verb}", share(count(i))))
-            .collect();
-        match &told[..] {
-            [_] => format!("The whole crack {}", told[0].trim_start_matches("100 % ")),
-            _ => format!("Of the crack {}", told.join(", ")),
-        }
     }
 
     /// Fills the facets: the part of a facet at each corner has that corner's status.
@@ -196,7 +225,7 @@ impl<'a> Face<'a> {
                 let part: Vec<Pixel> = [before, corners[i], after, mean(&corners)]
                     .map(pixel)
                     .to_vec();
-                regions[self.status[*point]].add(&part);
+                regions[self.states.0[*point]].add(&part);
             }
         }
         for (region, (_, tint)) in regions.iter_mut().zip(STATUS) {
@@ -235,7 +264,7 @@ impl<'a> Face<'a> {
             draw_marker(
                 canvas,
                 at,
-                status_marker(STATUS[self.status[point]].0),
+                status_marker(STATUS[self.states.0[point]].0),
                 MARKER_MM,
                 BLACK,
             );
@@ -244,21 +273,7 @@ impl<'a> Face<'a> {
 
     /// Status in the first row, the arrow in the second.
     fn legend(&self, canvas: &mut Canvas, [left, top]: [f64; 2]) {
-        let mut x = left;
-        for (index, (name, tint)) in STATUS.into_iter().enumerate() {
-            if self.status.contains(&index) {
-                canvas.boxed([x, top - 1.6], [x + 6.0, top + 1.6], tint, 0.1);
-                draw_marker(
-                    canvas,
-                    [x + 3.0, top],
-                    status_marker(name),
-                    MARKER_MM,
-                    BLACK,
-                );
-                canvas.text(name, [x + 7.5, top], TICK_PT, Anchor::Start, BLACK);
-                x += 19.0;
-            }
-        }
+        self.states.legend(canvas, [left, top], true);
         if self.largest > 0.0 {
             let y = top + LEGEND_MM;
             canvas.arrow([left + 0.5, y], [left + 5.5, y]);

@@ -4,11 +4,12 @@ use super::axis::{Axis, prefixed, range};
 use super::bands::{self, Levels, Triangle};
 use super::canvas::*;
 use super::colour::{BLACK, MIDDLE};
+use super::contact::States;
 use super::figure::{draw_labels, room_for_labels};
 use super::mesh::{Box2, DISPLACEMENT, conforming, deformed, fail, outline, point_vector, stroke};
 use super::panel::{Place, draw_panel};
 use super::series::Panel;
-use crate::model::field_mesh::{CellShape, FieldMesh};
+use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::significant;
 
@@ -18,6 +19,9 @@ const RIGHT: f64 = 19.0;
 /// Room above and below a body [mm].
 const ABOVE: f64 = 5.0;
 const BELOW: f64 = 10.0;
+/// Width of an undeformed crack, and room for what its tints mean [mm].
+const STRIP_MM: f64 = 0.8;
+const LEGEND_MM: f64 = 4.0;
 
 /// A scalar field on the points of a picture, in the unit of its label.
 struct Field {
@@ -26,14 +30,16 @@ struct Field {
     label: String,
 }
 
-/// Displacement components u_x and u_y of a plane picture as filled bands on the deformed shape.
+/// Displacement components u_x and u_y of a plane body as filled bands on the deformed shape, its cracks undeformed in the tints of
+/// their status.
 ///
 /// Needs the point vector `displacement_m`. Boundary and crack faces are drawn black, the undeformed outline grey; `run` is
 /// small text above the panels.
 ///
 /// # Errors
 /// [`ReportError::FieldMesh`] when the picture is not plane, has no area, or lacks the vector.
-pub fn displacement(picture: &FieldMesh, run: &str) -> Result<String, ReportError> {
+pub fn displacement(step: &FieldStep, run: &str) -> Result<String, ReportError> {
+    let picture = &step.body;
     let u = point_vector(picture, DISPLACEMENT)?;
     let field = |c: usize| {
         let (low, high) = range(u.iter().map(|u| u[c])).unwrap_or((0.0, 0.0));
@@ -46,8 +52,12 @@ pub fn displacement(picture: &FieldMesh, run: &str) -> Result<String, ReportErro
     };
     let lengths = u.iter().map(|u| u[0].hypot(u[1])).filter(|u| u.is_finite());
     let largest = told(lengths.fold(0.0, f64::max), "m");
-    let title = format!("Displacement, at most {largest}");
-    contours(picture, &[field(0), field(1)], &title, run)
+    let states = States::new(&step.crack)?;
+    let mut title = format!("Displacement, at most {largest}");
+    if !step.crack.cells.is_empty() {
+        title = format!("{}; displacement at most {largest}", states.title());
+    }
+    contours(step, &states, &[field(0), field(1)], &title, run)
 }
 
 fn told(value: f64, unit: &str) -> String {
@@ -56,20 +66,25 @@ fn told(value: f64, unit: &str) -> String {
 }
 
 /// What is drawn, the same in all panels.
-struct Body {
+struct Body<'a> {
     faces: Vec<Vec<usize>>,
     outline: Vec<[usize; 2]>,
     /// Undeformed and deformed places [m].
     places: [Vec<[f64; 2]>; 2],
+    /// The cracks, undeformed.
+    crack: &'a FieldMesh,
+    states: &'a States,
 }
 
 /// Two fields as panels.
 fn contours(
-    picture: &FieldMesh,
+    step: &FieldStep,
+    states: &States,
     fields: &[Field; 2],
     title: &str,
     run: &str,
 ) -> Result<String, ReportError> {
+    let picture = &step.body;
     if picture.dim != 2 {
         return fail(
             "picture",
@@ -88,6 +103,8 @@ fn contours(
         faces,
         outline,
         places,
+        crack: &step.crack,
+        states,
     };
     let stacked = shown.width() > 2.5 * shown.height();
     let share = if stacked { PAGE } else { PAGE / 2.0 };
@@ -105,8 +122,15 @@ fn contours(
     // A flat body leaves room for a readable colour bar all the same.
     let height = ABOVE + size[1].max(BAR_MM[0]) + BELOW;
     let rows = if stacked { 2.0 } else { 1.0 };
-    let mut canvas = Canvas::new(PAGE, head.height() + rows * height);
+    let drawn = head.height() + rows * height;
+    let legend = if step.crack.cells.is_empty() {
+        0.0
+    } else {
+        LEGEND_MM
+    };
+    let mut canvas = Canvas::new(PAGE, drawn + legend);
     head.draw(&mut canvas);
+    states.legend(&mut canvas, [left, drawn + 1.0], false);
     for (index, field) in fields.iter().enumerate() {
         let [right, down] = if stacked { [0.0, height] } else { [share, 0.0] };
         let left = left + index as f64 * right;
@@ -125,7 +149,7 @@ fn contours(
     canvas.finish(&format!("{title}: {run}"))
 }
 
-impl Body {
+impl Body<'_> {
     /// Bands of a field between the undeformed and the deformed outline.
     fn draw(&self, canvas: &mut Canvas, field: &Field, paper: impl Fn([f64; 2]) -> Pixel) {
         let place = |which: usize, point: usize| paper(self.places[which][point]);
@@ -135,6 +159,34 @@ impl Body {
         let triangles: Vec<Triangle> = triangles.collect();
         bands::fill(canvas, &triangles, &field.levels, 0.05);
         stroke(canvas, &self.outline, |p| place(1, p), BLACK, 0.2);
+        self.draw_states(canvas, paper);
+    }
+
+    /// The cracks before deformation: half of every facet in the state of its end.
+    fn draw_states(&self, canvas: &mut Canvas, paper: impl Fn([f64; 2]) -> Pixel) {
+        let lines = self
+            .crack
+            .cells
+            .iter()
+            .filter(|c| c.shape == CellShape::Line);
+        let lines: Vec<&FieldCell> = lines.collect();
+        let at = |point: usize| [0, 1].map(|c| self.crack.points[point][c]);
+        for edge in [true, false] {
+            for line in &lines {
+                let [Some(&a), Some(&b)] = [line.points.first(), line.points.last()] else {
+                    continue;
+                };
+                let middle = [0, 1].map(|c| (at(a)[c] + at(b)[c]) / 2.0);
+                for point in [a, b] {
+                    let half = vec![paper(at(point)), paper(middle)];
+                    let (colour, width) = match edge {
+                        true => (BLACK, STRIP_MM + 0.3),
+                        false => (self.states.tint(point), STRIP_MM),
+                    };
+                    canvas.pixel_line(half, colour, width);
+                }
+            }
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::studies::analysis::support::{end_with, lying, record, timed};
 use crate::studies::followed::Value;
 
 /// Files that must not depend on times.
-const TIMELESS: [&str; 3] = ["increments.csv", "deviations.csv", "success.csv"];
+const TIMELESS: [&str; 2] = ["increments.csv", "success.csv"];
 
 /// Three meshes of a plate with closed form and two of a beam without, with and without friction, by all methods at five
 /// tolerances; nsgs fails on the finest plate, barrier is refused on the beam.

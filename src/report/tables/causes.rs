@@ -1,65 +1,8 @@
 //! Why runs gave up.
 
 use super::words::*;
-use crate::report::table::{Column, Order, Row, columns};
+use crate::report::table::{Column, Row, columns};
 use crate::studies::analysis::causes::{CauseRow, StoppingRow};
-use crate::studies::record::Record;
-use crate::studies::why::Explanation;
-use crate::studies::why::cause::Diagnosis;
-
-/// Why a run gave up.
-pub struct WhyRow<'a> {
-    record: &'a Record,
-    why: &'a Explanation,
-}
-
-impl<'a> WhyRow<'a> {
-    /// Of a record that was asked.
-    fn of(record: &'a Record) -> Option<Self> {
-        let why = record.found.why.as_ref()?;
-        Some(Self { record, why })
-    }
-
-    /// Of all records that were asked.
-    pub fn all(records: &'a [Record]) -> Vec<Self> {
-        records.iter().filter_map(Self::of).collect()
-    }
-}
-
-impl Row for WhyRow<'_> {
-    const NAME: &'static str = "why";
-    const TITLE: &'static str = "Why runs gave up";
-    const QUESTION: &'static str =
-        "Which problem defeats which method, why, and what solves it instead?";
-    const READABLE: bool = false;
-    const ORDER: Order<Self> = Order::By(|a, b| a.record.id.cmp(&b.record.id));
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "id" "" = r.record.id.clone(), "cell";
-            "verdict" "" = &r.record.found.verdict, VERDICT;
-            "unique" "" = r.record.found.problem.as_ref().and_then(|size| size.unique), "`true` if each contact point alone has exactly one solution: min (W_nn − μ |W_nt|) > 0";
-            "cause" "" = r.why.diagnosis.cause.name(), CAUSE;
-            "period" "" = r.why.diagnosis.period, "iterations after which a cycle repeats";
-            "flips" "" = flips(&r.why.diagnosis), "contact points that change between open, stick and the directions of slip within a cycle, or while wandering, from 0";
-            "measure" "–" .significant(3) = r.why.diagnosis.measure, MEASURE;
-            "rate" "–" .significant(6) = r.why.diagnosis.rate, "`conditioning` and `slow`: factor by which an iteration reduces the violation over the last half of the run, of approximate methods the change of forces";
-            "more" "" .significant(2) = r.why.diagnosis.more, "iterations that are left at this rate";
-            "solutions" "" = r.why.solutions, "different solutions of the problem that are known: found by exact methods from several starts, or by trying all states of up to 8 points in the plane";
-            "cure" "" = r.why.cure.clone(), CURE;
-        }
-    }
-}
-
-/// The points that flip, with blanks between.
-fn flips(own: &Diagnosis) -> Option<String> {
-    let list: Vec<String> = own.flips.iter().map(usize::to_string).collect();
-    (!list.is_empty()).then(|| list.join(" "))
-}
-
-const CAUSE: &str = "why the run gave up, decided by running it again under observation: `no-solution`, `singular-tangent`, `inner-iteration`, `floor`, `cycle`, `conditioning`, `slow`, `several-solutions`, `wandering`, `unexplained`, asked in this order (docs/stability.md); empty if it did not give up but failed otherwise";
-const MEASURE: &str = "what decided: combinations of states tried (`no-solution`; `NaN` where a certificate proves it), smallest over largest singular value (`singular-tangent`), least violation (`cycle`, `slow`, `unexplained`), violation over its rounding (`floor`), condition number of W on the loaded rows, or at rest along what is missing to the nearest solution (`conditioning`), iterations up to the inner one that failed (`inner-iteration`), points that keep changing (`wandering`), largest difference between two solutions (`several-solutions`)";
-const CURE: &str = "first of the documented list that solves the problem: the method with another option, else another method; empty if none does";
 
 impl Row for CauseRow {
     const NAME: &'static str = "causes";

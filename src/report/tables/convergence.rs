@@ -105,7 +105,9 @@ impl Row for ErrorRow {
 impl Row for OrderRow {
     const NAME: &'static str = "orders";
     const TITLE: &'static str = "Observed beside theoretical orders of convergence over the last two halvings (reference exact: closed form; finest: value on the finest mesh, with its error bar)";
-    const QUESTION: &'static str = "Do the errors fall as fast as theory promises?";
+    const QUESTION: &'static str =
+        "Do the errors fall as fast as theory promises, and to which limit, whatever the mesh?";
+    const NOTES: &'static str = "Of `stickslip paper`: the reaction of the plate, beside what Table 1 prints. `edge-pairs` with enriched tip cells are the paper's own discretisation; `--full` has `star` multipliers with branch functions within 1.5 m of the tips too, on three meshes, `plate_mesh1_turned` beneath the same crack turned by 20 degrees at its centre; the corners of the plate alone keep these from converging.";
     const ORDER: Order<Self> = Order::By(|a, b| {
         let (a, b) = (&a.finest, &b.finest);
         compare_variants(&a.variant, &b.variant)
@@ -120,6 +122,8 @@ impl Row for OrderRow {
             "meshes" "" = r.meshes, "meshes with an honest verdict";
             "finest_h_m" "m" = r.finest.h, "cell size of the finest of them";
             "reference" "SI" .digits(7) = r.finest.reference, "its reference";
+            "printed" "SI" .digits(5) = r.printed, "what the founding paper prints for the case; empty where it prints nothing";
+            "printed_difference" "–" .significant(3).named("printed − reference").percent(2) = r.printed_difference(), "printed / reference − 1";
             "error_bar" "SI" .significant(4).digits(2) = r.finest.error_bar, "as in `convergence.csv`";
             "no_bar" "" .named("no bar") = r.finest.no_bar.map_or("", NoBar::name), NO_BAR;
             "error" "" .significant(4).named("finest error").power(3) = above_round_off(r.error), "error on the finest mesh that has one";

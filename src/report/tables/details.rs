@@ -3,7 +3,7 @@
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::rows::{
-    ExactRow, ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, QuantityRow, RunKey,
+    ExpectRow, HistoryRow, MET, MISSED_AS_DOCUMENTED, PointRow, QuantityRow, RunKey,
 };
 
 /// A row about one increment of one run.
@@ -72,50 +72,27 @@ impl Row for PointRow<'_> {
     const TITLE: &'static str = "Contact points at the end of every increment";
     const QUESTION: &'static str =
         "Where along a crack does it open, stick and slip, and under which forces?";
+    const NOTES: &'static str = "Where a case names the closed form of a 2D crack, rows of the method `exact` have it at 161 places from end to end, dense at the ends, those outside the body left out; the same for all meshes, contact spaces and methods. Values below 1e-12 of the largest are 0. A contact point of an integrated space holds the mean over its function, which near a tip differs from the value at its place.";
     const READABLE: bool = false;
 
     fn columns() -> Vec<Column<Self>> {
         keyed(columns! { r: Self,
             "crack" "" .key() = r.point.crack, "number of the crack, from 1";
-            "point" "" .key() = r.point.number, "number of the point within the crack, from 1, ordered along it";
+            "point" "" .key() = r.point.number, "number of the point within the crack, from 1, ordered along it; 0 of a closed form";
             "x_m" "m" .digits(5) = r.point.x_m, "position";
             "y_m" "m" .digits(5) = r.point.y_m, "position";
             "z_m" "m" .digits(5) = r.point.z_m, "position, 0 in 2D";
             "s_m" "m" = r.point.s_m, "distance along the crack from its first point; 0 in 3D";
-            "weight" "m or m²" = r.point.weight, "tributary length (2D) or area (3D)";
+            "weight" "m or m²" = r.point.weight, "tributary length (2D) or area (3D); 1 of a closed form";
             "gap_m" "m" .digits(4) = r.point.gap_m, "normal gap";
             "slip_a_m" "m" .digits(4) = r.point.slip_a_m, "tangential jump along a, total";
             "slip_b_m" "m" = r.point.slip_b_m, "tangential jump along b, total; 0 in 2D";
             "p_n" "`force_unit`" .digits(4) = r.point.p_n, "normal contact force; divided by `weight` it is the contact pressure in Pa";
             "p_a" "`force_unit`" .digits(4) = r.point.p_a, "tangential contact force along a";
             "p_b" "`force_unit`" = r.point.p_b, "tangential contact force along b; 0 in 2D";
-            "force_unit" "" = r.point.force_unit.clone(), "`N/m` in 2D, `N` in 3D";
-            "status" "" .shown() = r.point.status.clone(), "`open`, `stick` or `slip`";
+            "force_unit" "" = r.point.force_unit.clone(), "`N/m` in 2D, `N` in 3D, `Pa` of a closed form";
+            "status" "" .shown() = r.point.status.clone(), "`open`, `stick` or `slip`; empty of a closed form";
         })
-    }
-}
-
-impl Row for ExactRow {
-    const NAME: &'static str = "exact";
-    const TITLE: &'static str = "The closed form along a 2D crack, where the case names one";
-    const QUESTION: &'static str = "What would the exact solution be along the crack?";
-    const NOTES: &'static str = "161 places from end to end, dense at the ends, those outside the body left out; the same for all meshes, contact spaces and methods. Compare with `p_n`/`weight` of `points.csv`. A contact point of an integrated space holds the mean over its function, which near a tip differs from the value at its place.";
-    const READABLE: bool = false;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "case" "" .key() = r.case.clone(), CASE;
-            "friction" "–" .key() = r.friction, FRICTION;
-            "increment" "" .key() = r.increment, INCREMENT;
-            "crack" "" .key() = r.crack, "number of the crack, from 1";
-            "s_m" "m" .key() = r.s_m, "distance along the crack from its first point";
-            "x_m" "m" = r.x_m, "position";
-            "y_m" "m" = r.y_m, "position";
-            "gap_m" "m" .shown() = r.gap_m, "normal gap; below 1e-12 of the largest jump it is `0`, like the slip";
-            "slip_a_m" "m" .shown() = r.slip_a_m, "tangential jump along a, total";
-            "p_n_pa" "Pa" .shown() = r.p_n_pa, "contact pressure; below 1e-12 of the largest traction it is `0`, like the shear";
-            "p_a_pa" "Pa" .shown() = r.p_a_pa, "tangential contact traction along a on side 1";
-        }
     }
 }
 

@@ -6,7 +6,6 @@ use super::words::*;
 use crate::report::table::{Column, Order, Pivot, Row, columns};
 use crate::run::verdict::Verdict;
 use crate::studies::paper::comparison::ComparisonRow;
-use crate::studies::paper::converged_reactions::ConvergedRow;
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{PRINTED, Table1Row, Table2Row};
 
@@ -96,27 +95,6 @@ impl Row for PenaltyRow {
             "max_penetration_m" "m" .significant(3).named("max. penetration").power(2) = r.max_penetration_m, "largest penetration";
             "natural_map" "–" .residual().power(2) = r.natural_map, NATURAL_MAP;
             "verdict" "" .shown() = Verdict::or_not_run(r.verdict.as_ref()), VERDICT;
-        }
-    }
-}
-
-impl Row for ConvergedRow {
-    const NAME: &'static str = "converged";
-    const TITLE: &'static str = "Converged reactions of the plate with error bars, beside Table 1";
-    const QUESTION: &'static str = "What is the reaction of the plate, whatever the mesh, and how far off is the printed number?";
-    const NOTES: &'static str = "`edge-pairs` with enriched tip cells are the paper's own discretisation. With `--full` also `star` multipliers with branch functions within 1.5 m of the tips, on three meshes, which the corners of the plate alone keep from converging. The meshes one by one: `convergence.csv`.";
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "friction" "–" .key() = r.finest.variant.friction, FRICTION;
-            "space" "" .key() = r.finest.variant.space.clone(), SPACE;
-            "mesh" "" .key() = r.mesh, "`I`, `II`, or `I turned`: Mesh I turned by 20 degrees at its centre beneath the same crack";
-            "finest_h_m" "m" .named("finest h").fixed(4) = r.finest.h, "largest distance of neighbouring grid lines on the finest mesh";
-            "order" "–" .significant(3).fixed(2) = r.finest.order, "observed order in h over the last two halvings";
-            "reaction_mn_per_m" "MN/m" .decimals(3).fixed(3) = r.reaction_mn_per_m(), "reaction at the top on the finest mesh";
-            "error_bar_mn_per_m" "MN/m" .significant(2).fixed(3) = r.error_bar_mn_per_m(), "its uncertainty, as `error_bar` in `convergence.csv`";
-            "printed_mn_per_m" "MN/m" .fixed(1) = r.printed_mn_per_m, "reaction that Table 1 prints for this mesh; empty where it has none";
-            "printed_difference" "–" .significant(3).named("printed − reaction").percent(2) = r.printed_difference(), "printed / reaction − 1";
         }
     }
 }

@@ -4,7 +4,6 @@ use std::cmp::Ordering;
 
 use stickslip_methods::Tier;
 
-use super::convergence::{OfError, of_error};
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::analysis::compare_methods;
@@ -15,7 +14,6 @@ use crate::studies::analysis::series::{Point, Series, Swept, series};
 use crate::studies::analysis::success::SuccessRow;
 use crate::studies::analysis::test_set::TestSet;
 use crate::studies::analysis::{by_problem, problem_names, problems};
-use crate::studies::convergence::orders::ErrorRow;
 use crate::studies::record::{Record, Step};
 use crate::studies::statistics::Timing;
 
@@ -213,34 +211,6 @@ impl Row for PointRow<'_> {
             "method_low_s" "s" .time() = r.time(|t| t.low_s), "sum of the lower ends of their 95 % intervals";
             "method_high_s" "s" .time() = r.time(|t| t.high_s), "upper end";
         }
-    }
-}
-
-/// The discretisation error of a mesh with the time to the answer.
-pub struct AccuracyRow<'a>(pub &'a ErrorRow);
-
-impl OfError for AccuracyRow<'_> {
-    fn error(&self) -> &ErrorRow {
-        self.0
-    }
-}
-
-impl Row for AccuracyRow<'_> {
-    const NAME: &'static str = "time_to_accuracy";
-    const TITLE: &'static str = "Discretisation error beside the time to the answer, mesh by mesh";
-    const QUESTION: &'static str = "What does an accurate answer take, mesh and method together?";
-    const NOTES: &'static str = "Exact methods with default options, at the finest tolerance that was asked for on every mesh of the sequence. The energy norm of the error where there is a closed form, otherwise the strain energy against that of the finest mesh. Times are medians where there are repetitions; those of the body are the least of all cells on the mesh, which build the same one.";
-    const READABLE: bool = false;
-    const ORDER: Order<Self> = Order::By(|a, b| match ErrorRow::ORDER {
-        Order::By(compare) => compare(a.0, b.0),
-        _ => Ordering::Equal,
-    });
-
-    fn columns() -> Vec<Column<Self>> {
-        let mut columns = of_error();
-        // The records do not know the enrichment of the tips.
-        columns.retain(|column| column.about.name != "tip");
-        columns
     }
 }
 

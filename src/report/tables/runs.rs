@@ -5,13 +5,11 @@ use std::cmp::Ordering;
 use super::words::*;
 use crate::model::errors::Deviation;
 use crate::report::table::{Column, Order, Row, columns};
-use crate::studies::analysis::accuracy::sequences;
 use crate::studies::analysis::{compare_methods, compare_problems, published_times};
-use crate::studies::followed::Value;
 use crate::studies::record::{ProblemSize, Record, SolverError, Spent, Step};
 use crate::studies::rows::IncrementRow;
 use crate::studies::statistics::larger;
-use crate::studies::task::Problem;
+use crate::studies::why::Explanation;
 
 /// A row about a run.
 trait OfRecord {
@@ -65,6 +63,18 @@ impl OfRecord for RunRow<'_> {
 impl RunRow<'_> {
     fn error(&self, of: fn(&SolverError) -> f64) -> f64 {
         self.0.found.solver_error.as_ref().map_or(f64::NAN, of)
+    }
+
+    /// What is known of a run that gave up, where that was asked.
+    fn why(&self) -> Option<&Explanation> {
+        self.0.found.why.as_ref()
+    }
+
+    /// The points that flip, with blanks between.
+    fn flips(&self) -> Option<String> {
+        let flips = &self.why()?.diagnosis.flips;
+        let list: Vec<String> = flips.iter().map(usize::to_string).collect();
+        (!list.is_empty()).then(|| list.join(" "))
     }
 
     fn sum(&self, counter: fn(&Step) -> usize) -> usize {
@@ -125,7 +135,15 @@ impl Row for RunRow<'_> {
             "digest" "" = r.0.asked.digest.clone(), "SHA-256 of the case file, 16 digits";
             "exact" "" = r.0.found.exact, "whether the limit of the method are the contact laws";
             "verdict" "" .shown() = &r.0.found.verdict, VERDICT;
-            "cause" "" = r.0.found.cause(), "why it gave up, where that was asked: as in `why.csv`";
+            "cause" "" .shown() = r.0.found.cause(), CAUSE;
+            "cure" "" .shown() = r.why().and_then(|why| why.cure.clone()), CURE;
+            "measure" "–" .significant(3) = r.why().map(|why| why.diagnosis.measure), MEASURE;
+            "period" "" = r.why().and_then(|why| why.diagnosis.period), "iterations after which a cycle repeats";
+            "flips" "" = r.flips(), "contact points that change between open, stick and the directions of slip within a cycle, or while wandering, from 0";
+            "rate" "–" .significant(6) = r.why().and_then(|why| why.diagnosis.rate), "`conditioning` and `slow`: factor by which an iteration reduces the violation over the last half of the run, of approximate methods the change of forces";
+            "more" "" .significant(2) = r.why().and_then(|why| why.diagnosis.more), "iterations that are left at this rate";
+            "solutions" "" = r.why().map(|why| why.solutions), "different solutions of the problem that are known: found by exact methods from several starts, or by trying all states of up to 8 points in the plane";
+            "unique" "" = size(r.0).and_then(|size| size.unique), "`true` if each contact point alone has exactly one solution: min (W_nn − μ |W_nt|) > 0";
             "natural_map" "–" .residual().power(2) = r.largest(|i| i.judge.natural_map), NATURAL_MAP;
             "violation" "–" .residual() = r.largest(|i| i.judge.violation), "largest violation of the contact laws: what tiers and verdicts refer to";
             "overlap_m" "m" .shown().significant(2).named("overlap").power(2) = r.largest(|i| i.overlap_m), "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
@@ -213,80 +231,6 @@ impl Row for IncrementRow<'_> {
             "overlap_m" "m" .significant(2) = r.step.overlap_m, "deepest overlap of the faces anywhere, as `max_penetration_sampled`";
             "reference_force" "N or N/m" = r.step.judge.reference_force, "P_ref: contact forces that move the points as far as they move without contact, or as those at the start of the increment if that is more; 0 where no point closes";
             "reference_jump_m" "m" = r.step.judge.reference_jump_m, "u_ref: P_ref over the mean stiffness of the body against contact forces";
-        })
-    }
-}
-
-/// Kind of a quantity beside its closed form.
-const EXACT: &str = "exact";
-
-/// A quantity of a run, beside its closed form or followed over meshes.
-pub struct DeviationRow<'a> {
-    record: &'a Record,
-    quantity: Result<&'a Deviation, &'a Value>,
-}
-
-impl<'a> DeviationRow<'a> {
-    /// Those of a run.
-    pub fn of(record: &'a Record) -> impl Iterator<Item = Self> {
-        let exact = record.found.deviations.iter().map(Ok);
-        let followed = record.found.values.iter().map(Err);
-        exact
-            .chain(followed)
-            .map(move |quantity| Self { record, quantity })
-    }
-
-    /// Whether there is a closed form.
-    pub fn is_exact(&self) -> bool {
-        self.quantity.is_ok()
-    }
-
-    fn names(&self) -> [&'a str; 2] {
-        match self.quantity {
-            Ok(d) => [&d.quantity, &d.at],
-            Err(v) => [&v.quantity, &v.at],
-        }
-    }
-}
-
-impl<'a> DeviationRow<'a> {
-    /// All; a quantity without exact value says something only beside that of another mesh.
-    pub fn all(records: &'a [Record]) -> Vec<Self> {
-        let refined: Vec<Problem> = sequences(records).into_iter().flatten().collect();
-        let own = records.iter().flat_map(|record| {
-            let mut all = refined.iter();
-            let several = all.any(|own| own.is_same_problem(&record.asked));
-            Self::of(record).filter(move |row| several || row.is_exact())
-        });
-        own.collect()
-    }
-}
-
-impl OfRecord for DeviationRow<'_> {
-    fn record(&self) -> &Record {
-        self.record
-    }
-}
-
-impl Row for DeviationRow<'_> {
-    const NAME: &'static str = "deviations";
-    const TITLE: &'static str = "Quantities at the end of the path, of runs with an honest verdict";
-    const QUESTION: &'static str = "How far is the mesh from the exact solution?";
-    const NOTES: &'static str =
-        "Without a closed form only of cases that the study has on several meshes.";
-    const READABLE: bool = false;
-    const ORDER: Order<Self> =
-        Order::By(|a, b| compare_runs(a.record, b.record).then_with(|| a.names().cmp(&b.names())));
-
-    fn columns() -> Vec<Column<Self>> {
-        of_record(columns! { r: Self,
-            "kind" "" = if r.is_exact() { EXACT } else { "followed" }, "`exact`: beside the closed form; `followed`: a quantity of interest of a case without";
-            "quantity" "" = r.names()[0], "as in `convergence.csv`";
-            "at" "" = r.names()[1], "place and component; empty: the whole body";
-            "found" "SI" = r.quantity.map_or_else(|v| v.value, |d| d.found), "value";
-            "reference" "SI" = r.quantity.map_or(f64::NAN, |d| d.exact), "exact value; `NaN` of a followed quantity";
-            "error" "" .significant(4) = r.quantity.map_or(f64::NAN, |d| d.error), "as in `convergence.csv`; `NaN` of a followed quantity";
-            "norm" "SI" = r.quantity.map_or_else(|v| v.norm, |_| f64::NAN), "what errors of a followed quantity are relative to";
         })
     }
 }

@@ -1,9 +1,9 @@
-//! The stress suite: faults, invariances, ladders, scenes.
+//! The stress suite: faults, invariances, ladders.
 
 use super::words::*;
 use crate::report::table::{Column, Row, columns};
 use crate::studies::stress::finding::Fault;
-use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow, SceneRow, minimal};
+use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow};
 
 const FAMILY: &str = "`patch-2d`, `patch-3d`: uniform compression, all cracks stick, the answer is known; `slip-2d`, `slip-3d`: pushed and sheared with friction";
 const FAULT: &str = "`right`, or the worst that was found";
@@ -14,11 +14,18 @@ fn name(fault: Option<Fault>) -> String {
     fault.map_or("right", Fault::name).into()
 }
 
+impl FaultRow {
+    fn numbers(&self) -> String {
+        let numbers: Vec<String> = self.numbers.iter().map(u64::to_string).collect();
+        numbers.join(" ")
+    }
+}
+
 impl Row for FaultRow {
-    const NAME: &'static str = "stress_faults";
+    const NAME: &'static str = "stress_scenes";
     const TITLE: &'static str = "Random scenes by what became of them";
-    const QUESTION: &'static str = "How often does the program fail, and why?";
-    const NOTES: &'static str = "A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells). `no equilibrium`: no force within the cones of friction balances the load on a floating piece, as a certificate proves; `limit of friction`: the same for nine tenths of the friction, and no exact method finds an answer. `floor of the arithmetic`: solved, with an error up to 1e-6 that is another one in other units of length.";
+    const QUESTION: &'static str = "How often does the program fail, why, and how is it run again?";
+    const NOTES: &'static str = "`stickslip stress --seed SEED --family FAMILY --only NUMBER` runs a scene again and writes its case file; `cases/` has the smallest case that fails for the same fault. A scene counts once, by the worst that was found. `refused` scenes are refused at a place in their file, with the remedy; `beyond the mesh` are those that no mesh of such cells carries by construction (cracks along each other within 1e-6 of a cell; without tip functions shorter than two cells). `no equilibrium`: no force within the cones of friction balances the load on a floating piece, as a certificate proves; `limit of friction`: the same for nine tenths of the friction, and no exact method finds an answer. `floor of the arithmetic`: solved, with an error up to 1e-6 that is another one in other units of length.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -26,7 +33,9 @@ impl Row for FaultRow {
             "fault" "" .key() = name(r.fault), FAULT;
             "scenes" "" .shown() = r.scenes, "how many";
             "share" "–" .significant(4).percent(2) = r.share, "of all scenes of the family";
-            "example" "" .shown() = r.example, "number of one of them: `stickslip stress --family FAMILY --only NUMBER` runs it again";
+            "numbers" "" .shown() = r.numbers(), "their numbers in the family, from 0; empty of right ones";
+            "reason" "" = r.reason.clone(), "what is wrong with the first, in one line";
+            "error" "–" .residual().power(2) = r.error, "largest error of the default method against the closed form, or of the energy identity; `NaN` where it has no answer";
             "minimal" "" .shown() = r.minimal.clone().unwrap_or_default(), MINIMAL;
         }
     }
@@ -72,27 +81,6 @@ impl Row for LadderRow {
             "others" "" .shown() = r.others.clone(), "the other values with their faults";
             "error" "–" .shown().residual() = r.error, "largest error where it was right";
             "iterations" "" .shown() = r.iterations, "most iterations of the default method where it was right";
-        }
-    }
-}
-
-impl Row for SceneRow<'_> {
-    const NAME: &'static str = "stress_scenes";
-    const TITLE: &'static str = "Scenes that are not right";
-    const QUESTION: &'static str = "What remains broken, and how can it be run again?";
-    const NOTES: &'static str = "`stickslip stress --seed SEED --family FAMILY --only NUMBER` runs the scene again and writes its case file.";
-    const READABLE: bool = false;
-
-    fn columns() -> Vec<Column<Self>> {
-        columns! { r: Self,
-            "seed" "" = r.seed, "seed of the suite";
-            "family" "" .shown() = r.finding.scene.family.name(), FAMILY;
-            "number" "" .shown() = r.finding.scene.number, "number in the family, from 0";
-            "category" "" .shown() = r.finding.scene.category.clone(), "how its cracks lie";
-            "fault" "" .shown() = r.fault.name(), FAULT;
-            "reason" "" .shown() = r.finding.reason.clone(), "in one line";
-            "error" "–" .residual() = r.finding.error(), "largest error of the default method against the closed form, or of the energy identity";
-            "minimal" "" .shown() = minimal(r.finding).unwrap_or_default(), MINIMAL;
         }
     }
 }

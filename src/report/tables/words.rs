@@ -28,3 +28,6 @@ pub const REPORTED_S: &str = "of a program from outside (`exec:`) its own accoun
 pub const AT: &str = "place: a side, a probe, a crack (`crack-1`), or empty";
 pub const COMPONENT: &str = "`x`, `y`, `z`, `n`, `a`, `b`, or empty";
 pub const DIMENSION: &str = "space dimension, 2 or 3";
+pub const CAUSE: &str = "why the run gave up, decided by running it again under observation: `no-solution`, `singular-tangent`, `inner-iteration`, `floor`, `cycle`, `conditioning`, `slow`, `several-solutions`, `wandering`, `unexplained`, asked in this order (docs/stability.md); empty if it did not give up but failed otherwise";
+pub const MEASURE: &str = "what decided: combinations of states tried (`no-solution`; `NaN` where a certificate proves it), smallest over largest singular value (`singular-tangent`), least violation (`cycle`, `slow`, `unexplained`), violation over its rounding (`floor`), condition number of W on the loaded rows, or at rest along what is missing to the nearest solution (`conditioning`), iterations up to the inner one that failed (`inner-iteration`), points that keep changing (`wandering`), largest difference between two solutions (`several-solutions`)";
+pub const CURE: &str = "first of the documented list that solves the problem: the method with another option, else another method; empty if none does";

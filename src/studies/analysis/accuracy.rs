@@ -1,15 +1,13 @@
 //! Time to accuracy: the error of the discretisation against what it takes to have the answer, mesh by mesh.
 //!
-//! One quantity per sequence of meshes: the energy norm of the error against the closed form; without one the strain energy
-//! against that of the finest mesh, see [`orders`]. Methods that
-//! solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
+//! All quantities that are followed over a sequence of meshes, against the closed form or against the finest mesh, see
+//! [`orders`]. Methods that solve the contact laws enter, with default options and the finest tolerance that was asked for on every mesh: the
 //! modelling error of the others would hide that of the mesh.
 
 use super::{
     body_times, common_tolerance, compare_methods, compare_problems, has_defaults, problems,
     published_times,
 };
-use crate::model::errors::Deviation;
 use crate::run::verdict::Verdict;
 use crate::studies::convergence::orders::{self, ErrorRow, OrderRow};
 use crate::studies::convergence::{Measured, Sample, Variant};
@@ -17,10 +15,8 @@ use crate::studies::record::Record;
 use crate::studies::task::Problem;
 use crate::studies::tips::Regularity;
 
-/// Quantity of the closed form that is followed.
-const NORM: &str = "energy";
-/// Quantity that is shown without one; the others that are followed have a say in its error bar.
-const FUNCTIONAL: &str = "strain_energy";
+/// What figures show: the energy norm of the error; without a closed form the strain energy.
+const SHOWN: [&str; 2] = ["energy", "strain_energy"];
 
 /// One case, contact space and friction on several meshes.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,24 +31,29 @@ pub struct Refinement {
     pub orders: Vec<OrderRow>,
 }
 
-/// All sequences of at least two meshes with something to measure.
-pub fn refinements(records: &[Record]) -> Vec<Refinement> {
-    let meshes = sequences(records);
-    meshes
-        .iter()
-        .filter_map(|meshes| refinement(records, meshes))
-        .collect()
+impl Refinement {
+    /// The errors that figures show, none of what has one mesh.
+    pub fn shown(&self) -> (Vec<&ErrorRow>, Option<&OrderRow>) {
+        let is_shown = |row: &ErrorRow| SHOWN.contains(&row.quantity.as_str()) && row.at.is_empty();
+        let mut orders = self.orders.iter().filter(|order| order.meshes > 1);
+        let errors = self.errors.iter().filter(|row| is_shown(row));
+        (
+            errors.collect(),
+            orders.find(|order| is_shown(&order.finest)),
+        )
+    }
 }
 
-/// Problems that differ in their mesh alone, from coarse to fine; at least two each.
-pub fn sequences(records: &[Record]) -> Vec<Vec<Problem>> {
+/// All sequences of meshes with something to measure.
+pub fn refinements(records: &[Record]) -> Vec<Refinement> {
     let mut all = problems(records);
     all.sort_by(|a, b| {
         compare_problems(&a.without_mesh(), &b.without_mesh()).then(a.refine.cmp(&b.refine))
     });
     let sequences = all.chunk_by(|a, b| a.without_mesh() == b.without_mesh());
-    let several = sequences.filter(|meshes| meshes.len() > 1);
-    several.map(<[Problem]>::to_vec).collect()
+    sequences
+        .filter_map(|meshes| refinement(records, meshes))
+        .collect()
 }
 
 fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
@@ -72,11 +73,10 @@ fn refinement(records: &[Record], meshes: &[Problem]) -> Option<Refinement> {
         compare_methods(&a.asked.method, &b.asked.method).then(a.asked.refine.cmp(&b.asked.refine))
     });
     let samples = finest.iter().filter_map(|record| sample(record, records));
-    let samples: Vec<Sample> = samples.collect();
-    let (mut errors, mut orders) = orders::rows(&samples);
-    let shown = |quantity: &str| [NORM, FUNCTIONAL].contains(&quantity);
-    errors.retain(|row| shown(&row.quantity));
-    orders.retain(|row| shown(&row.finest.quantity));
+    // A value on one mesh says nothing of its error.
+    let tells = |own: &Sample| meshes.len() > 1 || matches!(own.measured, Measured::Exact(_));
+    let samples: Vec<Sample> = samples.filter(tells).collect();
+    let (errors, orders) = orders::rows(&samples);
     Some(Refinement {
         coarsest: meshes.first()?.clone(),
         dim: samples.first()?.dim,
@@ -112,9 +112,8 @@ fn sample(record: &Record, records: &[Record]) -> Option<Sample> {
 
 fn measured(record: &Record) -> Option<Measured> {
     let found = &record.found;
-    let norm = |d: &&Deviation| d.quantity == NORM && d.at.is_empty();
-    if let Some(deviation) = found.deviations.iter().find(norm) {
-        return Some(Measured::Exact(vec![deviation.clone()]));
+    if !found.deviations.is_empty() {
+        return Some(Measured::Exact(found.deviations.clone()));
     }
     (!found.values.is_empty()).then(|| Measured::Values(found.values.clone()))
 }
@@ -142,6 +141,7 @@ pub(super) fn seconds(record: &Record, records: &[Record]) -> [f64; 6] {
 mod tests {
     use super::super::support::{record, timed};
     use super::*;
+    use crate::model::errors::Deviation;
     use crate::studies::convergence::orders::Kind;
 
     fn mesh(refine: usize, method: &str, tolerance: f64) -> Record {
@@ -197,6 +197,9 @@ mod tests {
             .map(|r| r.error)
             .collect();
         assert_eq!(errors, [0.1, 0.1]);
-        assert!(refinements(&records[..4]).is_empty(), "one mesh");
+        assert!(
+            refinements(&records[..4])[0].shown().1.is_none(),
+            "one mesh"
+        );
     }
 }

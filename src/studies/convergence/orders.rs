@@ -85,6 +85,16 @@ pub struct OrderRow {
     pub theory: Option<f64>,
     /// Dimension of the body: the unknowns grow like h^−dim.
     pub dim: usize,
+    /// What the founding paper prints for the case; none where it prints nothing.
+    pub printed: Option<f64>,
+}
+
+impl OrderRow {
+    /// (printed − reference) / reference [-].
+    pub fn printed_difference(&self) -> Option<f64> {
+        self.printed
+            .map(|printed| printed / self.finest.reference - 1.0)
+    }
 }
 
 /// Order in h that theory promises; of contact tractions a lower bound.
@@ -240,6 +250,7 @@ fn sequence(mut points: Vec<Point<'_>>, bar: Result<f64, NoBar>) -> (Vec<ErrorRo
         error: with_error.map_or(f64::NAN, |row| row.error),
         theory: theoretical_order(&rows[finest].quantity, sample.regularity),
         dim: sample.dim,
+        printed: None,
     };
     (rows, order)
 }

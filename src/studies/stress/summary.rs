@@ -1,5 +1,4 @@
-//! Findings summed up: faults, invariances, ladders, and every scene that is not right; the records of methods go to the analyses of
-//! any records.
+//! Findings summed up: faults, invariances, ladders; the records of methods go to the analyses of any records.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +20,13 @@ pub struct FaultRow {
     pub scenes: usize,
     /// Of all of the family [-].
     pub share: f64,
-    /// Number of the first.
-    pub example: u64,
-    /// Its smallest case, as a file of the report.
+    /// Their numbers; none of right ones.
+    pub numbers: Vec<u64>,
+    /// What is wrong with the first.
+    pub reason: String,
+    /// Largest error of the default method [-].
+    pub error: f64,
+    /// Smallest case of the first that has one, as a file of the report.
     pub minimal: Option<String>,
 }
 
@@ -73,16 +76,6 @@ pub struct LadderRow {
     pub iterations: usize,
 }
 
-/// A scene that is not right.
-pub struct SceneRow<'a> {
-    /// Seed of the suite.
-    pub seed: u64,
-    /// The scene, and what was found.
-    pub finding: &'a Finding,
-    /// The worst of it.
-    pub fault: Fault,
-}
-
 /// File of the smallest case of a finding.
 pub fn minimal(finding: &Finding) -> Option<String> {
     let name = finding.scene.family.name();
@@ -98,15 +91,20 @@ pub fn faults(findings: &[Finding]) -> Vec<FaultRow> {
     }
     let all = |family: Family| findings.iter().filter(|f| f.scene.family == family).count();
     let row = |((family, fault), own): ((Family, Option<Fault>), Vec<&Finding>)| {
-        let small = own.iter().find(|f| f.minimal.is_some());
-        let example = small.or(own.first());
+        let wrong = own.iter().filter(|f| f.fault.is_some());
+        let errors = own.iter().map(|f| f.error()).filter(|e| e.is_finite());
         FaultRow {
             family,
             fault,
             scenes: own.len(),
             share: own.len() as f64 / all(family) as f64,
-            example: example.map_or(0, |f| f.scene.number),
-            minimal: small.and_then(|f| minimal(f)),
+            numbers: wrong.clone().map(|f| f.scene.number).collect(),
+            reason: wrong
+                .clone()
+                .next()
+                .map_or_else(String::new, |f| f.reason.clone()),
+            error: errors.reduce(f64::max).unwrap_or(f64::NAN),
+            minimal: own.iter().find_map(|f| minimal(f)),
         }
     };
     groups.into_iter().map(row).collect()
@@ -198,19 +196,6 @@ pub fn of_ladders(findings: &[Finding]) -> Vec<LadderRow> {
         })
     };
     ladders().iter().filter_map(row).collect()
-}
-
-/// Every scene that is not right, but those beyond the mesh: they are as many as were drawn.
-pub fn scenes(seed: u64, findings: &[Finding]) -> Vec<SceneRow<'_>> {
-    let told = findings.iter().filter(|f| f.fault != Some(Fault::Beyond));
-    told.filter_map(|finding| {
-        finding.fault.map(|fault| SceneRow {
-            seed,
-            finding,
-            fault,
-        })
-    })
-    .collect()
 }
 
 /// Whether the program did nothing wrong: no fault, and no scene with one answer that the default method missed.

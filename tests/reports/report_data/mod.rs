@@ -52,11 +52,7 @@ pub fn results() -> Results {
             add_run(&mut results, key(method, friction));
         }
     }
-    let step = FieldStep {
-        time: 1.0,
-        body: plate(),
-        crack: crack_line(),
-    };
+    let step = plate_step();
     let half = FieldStep {
         time: 0.5,
         ..step.clone()
@@ -387,6 +383,15 @@ pub fn crack_line() -> FieldMesh {
     picture
 }
 
+/// The plate with its crack.
+pub fn plate_step() -> FieldStep {
+    FieldStep {
+        time: 1.0,
+        body: plate(),
+        crack: crack_line(),
+    }
+}
+
 /// 6 × 18 × 10 bricks of a beam 2 × 6 × 3 m, the two halves apart at mid-height, bent downwards and twisted.
 pub fn beam() -> FieldMesh {
     let cells = [6, 18, 10];
@@ -494,24 +499,28 @@ pub fn beam_step() -> FieldStep {
 }
 
 /// A closed form along the crack of [`points`].
-pub fn exact(friction: f64) -> Vec<ExactRow> {
+pub fn exact(friction: f64) -> Vec<ExactPoint> {
     let length = CRACK * 2f64.sqrt() * 2.0;
     let row = |i: usize| {
         let s = length * i as f64 / 40.0;
         let pressure = 2.6e7 * (1.0 + 0.3 * (s * (length - s)).max(0.0).sqrt() / length);
-        ExactRow {
-            case: "plate_mesh1".into(),
-            friction,
-            increment: 1,
-            crack: 1,
-            s_m: s,
+        let key = RunKey {
+            mesh: String::new(),
+            space: String::new(),
+            ..key("exact", friction)
+        };
+        let point = PointState {
             x_m: -CRACK + s / 2f64.sqrt(),
             y_m: -CRACK + s / 2f64.sqrt(),
+            s_m: s,
+            weight: 1.0,
             gap_m: 0.0,
             slip_a_m: 0.07 * (s * (length - s)).max(0.0).sqrt() / length,
-            p_n_pa: pressure,
-            p_a_pa: -friction * pressure,
-        }
+            p_n: pressure,
+            p_a: -friction * pressure,
+            ..points("exact", friction)[0].clone()
+        };
+        ExactPoint { key, point }
     };
     (0..=40).rev().map(row).collect()
 }
