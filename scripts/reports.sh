@@ -51,7 +51,7 @@ for part in $parts; do
             keep random success causes stopping success.svg
             keep sensitivity options options.svg
             keep study ranking scaling success runs.csv profile.time.svg 'scaling.*.svg' \
-                'work_precision.plate_mesh1*mu-0.8.svg' 'time_to_accuracy.partial_slip.*.svg'
+                'time_against_solver_error.plate_mesh1*mu-0.8.svg' 'time_against_total_error.partial_slip.*.svg'
             "$stickslip" show reports ;;
         *) echo "unknown part: $part" >&2; exit 2 ;;
     esac

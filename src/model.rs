@@ -6,6 +6,7 @@ pub mod errors;
 pub mod extent;
 pub mod field_mesh;
 pub mod fixed_loads;
+pub mod intensities;
 pub mod loading;
 pub mod memory;
 pub mod nodal_forces;

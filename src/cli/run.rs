@@ -4,12 +4,13 @@ use stickslip_methods::Tier;
 
 use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
-use super::output::conclude;
+use super::output::{conclude, show};
 use super::progress::Bar;
 use crate::report::{Plan, add_input, page, standard};
-use crate::run::choice::choices;
+use crate::run::choice::{Choice, choices};
 use crate::studies::axes::Subject;
 use crate::studies::cases::{Fields, Settings, Why, run_case};
+use crate::studies::convergence::estimate;
 use crate::studies::expect;
 use crate::studies::results::Results;
 
@@ -33,6 +34,9 @@ pub struct Arguments {
     /// Starts from which methods look for further answers: `solved (several)` where two hold; 1 for that of the increment alone
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
+    /// Estimate the error of the mesh, in the energy norm and of every quantity, from a second one
+    #[arg(long)]
+    error: bool,
     /// Look for what solves the problem of a run that gave up
     #[arg(long)]
     explain: bool,
@@ -42,6 +46,9 @@ pub struct Arguments {
     #[command(flatten)]
     limit: ProgramLimit,
 }
+
+/// Method that errors of meshes are estimated by.
+const REFERENCE: &str = "hybrid";
 
 /// Values of `--fields`.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -84,12 +91,19 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let bar = Bar::new();
     let mut results = Results::default();
     for case in &cases {
-        results.append(run_case(case, &given, settings, &bar)?);
+        let mut own = run_case(case, &given, settings, &bar)?;
+        if arguments.error {
+            estimate(case, &Choice::parse(REFERENCE)?, &mut own, &bar)?;
+        }
+        results.append(own);
     }
     bar.finish();
     let mut bundle = standard::bundle(&results, &provenance_with(settings, &given))?;
     add_input(&mut bundle, Subject::texts(&cases))?;
     page::add(&mut bundle)?;
     claim.commit(&bundle)?;
+    if arguments.error {
+        show(&results.with_errors(), "");
+    }
     Ok(conclude(&results, claim.dir()))
 }

@@ -151,6 +151,10 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
             "the shell bounds memory (ulimit -v or -d): a task that is denied it ends this run"
         ));
     }
+    if let Some(seconds) = sweep.seconds {
+        let told = format_args!("{} tasks: about {seconds:.0} s on one core", tasks.len());
+        say(told);
+    }
     let lab = Lab {
         program: &program,
         jobs: usize::from(arguments.jobs),

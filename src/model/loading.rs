@@ -10,13 +10,14 @@
 
 use stickslip_methods::Load;
 use stickslip_xfem::exact::{Field, Setting};
+use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::loads::exact_values::exact_values;
 use stickslip_xfem::loads::nodal_forces::no_force;
 
 use crate::case::{Case, CaseError, ExactSpec, History, LoadKind};
 use crate::model::body::{Body, BodyError};
 use crate::model::fixed_loads::FixedLoad;
-use crate::model::nodal_forces::Loaded;
+use crate::model::nodal_forces::{Loaded, vector};
 use crate::model::refusals::load_error;
 
 /// The closed form at time 0 or at the end of an increment, on the body.
@@ -86,6 +87,40 @@ impl<'a> Loading<'a> {
 
     fn factor(&self, history: &History, increment: usize) -> f64 {
         history.factor(self.time(increment), self.case.path.end)
+    }
+
+    /// Uniform initial stress at the end of an increment [Pa].
+    pub fn initial_stress(&self, increment: usize) -> [Point; 3] {
+        let mut total = [[0.0; 3]; 3];
+        for load in &self.case.loads {
+            if let LoadKind::InitialStress(stress) = &load.kind {
+                let factor = self.factor(&load.history, increment);
+                for (row, own) in total.iter_mut().zip(stress) {
+                    *row = add_scaled(row, factor, own);
+                }
+            }
+        }
+        total
+    }
+
+    /// Force per volume at the end of an increment at a point on a side of the first crack [N/m³].
+    pub fn body_force(&self, increment: usize, x: &Point, side: f64) -> Point {
+        let mut total = [0.0; 3];
+        for load in &self.case.loads {
+            let (factor, force) = match &load.kind {
+                LoadKind::Body(_, Some(own)) if own.side != side => continue,
+                LoadKind::Body(density, _) => {
+                    (self.factor(&load.history, increment), vector(density))
+                }
+                LoadKind::ExactBody => match self.exact(increment) {
+                    Some(field) => (1.0, field.body_force(x, side)),
+                    None => continue,
+                },
+                _ => continue,
+            };
+            total = add_scaled(&total, factor, &force);
+        }
+        total
     }
 
     /// External forces at the end of an increment over all unknowns [N, in 2D N/m].

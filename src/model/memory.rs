@@ -48,7 +48,7 @@ pub fn check(case: &Case, grid: &GridSpec) -> Result<(), CaseError> {
 
 fn fits(case: &Case, grid: &GridSpec, machine: f64) -> Result<(), CaseError> {
     let dim = grid.lines.len();
-    let cells: f64 = grid.lines.iter().map(|l| (l.len() - 1) as f64).product();
+    let cells = grid.cells();
     let needed = predicted_gb(dim, cells);
     if needed <= machine {
         return Ok(());

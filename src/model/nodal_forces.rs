@@ -101,6 +101,7 @@ impl<'a> Loaded<'a> {
     }
 }
 
-fn vector(v: &[f64]) -> Point {
+/// Components in space of a vector of a case.
+pub fn vector(v: &[f64]) -> Point {
     [0, 1, 2].map(|a| v.get(a).copied().unwrap_or(0.0))
 }

@@ -15,15 +15,40 @@ use crate::model::snapshot::{Snapshot, tangential};
 pub struct Quantity {
     /// One of those that [`unit`] knows.
     pub name: String,
-    /// Place: a side, a probe, a crack (`crack-1`), or empty.
+    /// Place: a side, a probe, a crack (`crack-1`), a tip (`crack-1 tip-2`, `crack-1 front-45deg`), or empty.
     pub at: String,
-    /// x, y, z, n, a, b, or empty.
+    /// x, y, z, n, a, b, I, II, III, or empty.
     pub component: String,
     /// Value, SI.
     #[serde(with = "nan")]
     pub value: f64,
     /// Unit of the value.
     pub unit: String,
+    /// Estimate of its error, in its unit; not-a-number where there is none.
+    #[serde(with = "nan")]
+    pub error: f64,
+    /// [`ESTIMATE`], [`EXACT`], why there is no value or no estimate, or empty.
+    pub error_kind: String,
+}
+
+/// Kind of an error that is estimated.
+pub const ESTIMATE: &str = "estimate";
+/// Kind of the distance from a closed form.
+pub const EXACT: &str = "exact";
+
+impl Quantity {
+    /// A value with its name, place and component in a body of that dimension, without an estimate of its error.
+    pub fn new([name, at, component]: [&str; 3], value: f64, dim: usize) -> Self {
+        Self {
+            name: name.into(),
+            at: at.into(),
+            component: component.into(),
+            value,
+            unit: unit(name, dim).unwrap_or_default().into(),
+            error: f64::NAN,
+            error_kind: String::new(),
+        }
+    }
 }
 
 /// One contact point.
@@ -79,6 +104,9 @@ pub fn unit(name: &str, dim: usize) -> Option<&'static str> {
         "max_gap" | "max_penetration" | "max_penetration_sampled" => "m",
         "points_open" | "points_stick" | "points_slip" => "-",
         "energy_identity" | "path_error" => "-",
+        "stress_intensity" => "Pa·√m",
+        "energy_release_rate" => "J/m²",
+        "growth_angle" => "°",
         "dissipation" | "external_work" | "initial_stress_work" | "strain_energy" => match dim {
             2 => "J/m",
             _ => "J",
@@ -92,13 +120,7 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     let dim = body.mesh.dim();
     let mut rows = Vec::new();
     let mut push = |name: &str, at: &str, component: &str, value: f64| {
-        rows.push(Quantity {
-            name: name.into(),
-            at: at.into(),
-            component: component.into(),
-            value,
-            unit: unit(name, dim).unwrap_or_default().into(),
-        });
+        rows.push(Quantity::new([name, at, component], value, dim));
     };
     for (at, component, total) in reactions(case, body, now) {
         push("reaction", &at, AXES[component], total);

@@ -19,8 +19,8 @@ pub use runs::distinct;
 pub mod scaling;
 pub mod stages;
 pub mod success;
-pub mod time_to_accuracy;
-pub mod work_precision;
+pub mod time_against_solver_error;
+pub mod time_against_total_error;
 
 use super::tables::Chapter;
 pub use kind::Kind;
@@ -32,8 +32,8 @@ pub static CATALOGUE: [(Chapter, &Kind); 14] = [
     (Chapter::Study, &scaling::CLASSES),
     (Chapter::Study, &scaling::TIME),
     (Chapter::Study, &options::KIND),
-    (Chapter::Study, &work_precision::KIND),
-    (Chapter::Study, &time_to_accuracy::KIND),
+    (Chapter::Study, &time_against_solver_error::KIND),
+    (Chapter::Study, &time_against_total_error::KIND),
     (Chapter::Study, &performance::KIND),
     (Chapter::Study, &stages::KIND),
     (Chapter::Accuracy, &error::KIND),

@@ -29,6 +29,7 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     table::add(&mut bundle, &paper.converged, "")?;
     let defaults = comparison(paper.results.records());
     figures::cost::add(&mut bundle, &defaults)?;
+    figures::time_against_total_error::add(&mut bundle, &paper.refined, "")?;
     let all = paper.results.records().chain(&paper.variants);
     table::add(&mut bundle, &comparison(all), "")?;
     Ok(bundle)

@@ -35,8 +35,8 @@ pub fn bundle(
     figures::options::add(&mut bundle, &sweeps, &caveat)?;
     figures::scaling::add(&mut bundle, records, &caveat)?;
     figures::performance::add(&mut bundle, "", &sets, &caveat)?;
-    figures::work_precision::add(&mut bundle, records, &caveat)?;
-    figures::time_to_accuracy::add(&mut bundle, records, &caveat)?;
+    figures::time_against_solver_error::add(&mut bundle, records, &caveat)?;
+    figures::time_against_total_error::add(&mut bundle, records, &caveat)?;
     figures::stages::add(&mut bundle, records, &caveat)?;
     add_classes(&mut bundle, records, &caveat)?;
     super::add_provenance(&mut bundle, provenance)?;

@@ -5,11 +5,13 @@
 //! quantities of interest on the finest mesh, whose error bars come from the meshes before it.
 
 pub mod error_bar;
+mod estimate;
 pub mod orders;
 mod power_law;
 mod sample;
 
 pub use error_bar::NoBar;
+pub use estimate::{Errors, errors_of_mesh, estimate};
 pub use power_law::slope;
 pub use sample::{Measured, Sample, Variant};
 

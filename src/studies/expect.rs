@@ -2,6 +2,7 @@
 
 use crate::case::{Case, CaseError, Expect, Tolerance};
 use crate::model::boundary::region_name;
+use crate::model::intensities::{MODES, places};
 use crate::model::quantities::{AXES, LOCAL, unit};
 use crate::run::choice::Choice;
 use crate::studies::record::Record;
@@ -14,6 +15,11 @@ use crate::studies::rows::{ExpectRow, MET, MISSED_AS_DOCUMENTED, RunKey};
 pub fn check(case: &Case) -> Result<(), CaseError> {
     let dim = case.model.dim();
     let cracks = || (1..=case.cracks.len()).map(|i| format!("crack-{i}"));
+    let tips = || {
+        cracks()
+            .flat_map(|crack| places(&crack, dim).collect::<Vec<_>>())
+            .collect()
+    };
     let anywhere = || std::iter::once(String::new()).chain(cracks()).collect();
     for expect in &case.expects {
         let name = expect.quantity.as_str();
@@ -32,6 +38,8 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
             }
             "contact_force" => (cracks().collect(), &LOCAL[..dim]),
             "mean_slip" => (cracks().collect(), &LOCAL[1..dim]),
+            "stress_intensity" => (tips(), &MODES[..dim]),
+            "energy_release_rate" | "growth_angle" => (tips(), &[""]),
             "strain_energy"
             | "external_work"
             | "initial_stress_work"

@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::model::body::Body;
+use crate::model::intensities::intensities;
+use crate::model::loading::Loading;
 use crate::model::quantities::{Quantity, quantities};
 use crate::model::snapshot::Snapshot;
 
 /// Quantities of interest that are followed under refinement where there is no closed form.
-const FOLLOWED: [&str; 7] = [
+const FOLLOWED: [&str; 9] = [
     "reaction",
     "contact_force",
     "strain_energy",
@@ -16,6 +17,8 @@ const FOLLOWED: [&str; 7] = [
     "mean_slip",
     "max_slip",
     "max_gap",
+    "stress_intensity",
+    "energy_release_rate",
 ];
 
 /// One followed quantity of interest.
@@ -33,19 +36,22 @@ pub struct Value {
     pub scale: f64,
 }
 
-/// The quantities of interest that are followed under refinement.
-pub fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
-    let rows = quantities(case, body, now);
+/// The quantities of interest that are followed under refinement, at the end of the path.
+pub fn followed(case: &Case, loading: &Loading<'_>, now: &Snapshot) -> Vec<Value> {
+    let mut rows = quantities(case, loading.body(), now);
+    rows.extend(intensities(loading, loading.increments(), now));
     let largest =
         |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     let displacement = largest(&mut now.u.iter().copied());
     let is_force = |row: &&Quantity| ["reaction", "contact_force"].contains(&row.name.as_str());
     let force = largest(&mut rows.iter().filter(is_force).map(|row| row.value));
+    let of_tips =
+        |name: &str| largest(&mut rows.iter().filter(|r| r.name == name).map(|r| r.value));
     // With one crack what is its own is that of all.
     let total = |name: &str| rows.iter().any(|row| row.name == name && row.at.is_empty());
     let followed = rows
         .iter()
-        .filter(|row| FOLLOWED.contains(&row.name.as_str()))
+        .filter(|row| FOLLOWED.contains(&row.name.as_str()) && !row.value.is_nan())
         .filter(|row| case.cracks.len() > 1 || row.at.is_empty() || !total(&row.name));
     followed
         .map(|row| {
@@ -56,6 +62,7 @@ pub fn followed(case: &Case, body: &Body, now: &Snapshot) -> Vec<Value> {
             let scale = match row.name.as_str() {
                 "reaction" | "contact_force" => force,
                 "mean_slip" | "max_slip" | "max_gap" => displacement,
+                "stress_intensity" | "energy_release_rate" => of_tips(&row.name),
                 _ => now.strain_energy,
             };
             Value {

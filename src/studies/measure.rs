@@ -75,10 +75,11 @@ pub fn measure(scene: &Scene<'_>, task: &Task, choice: &Choice) -> Result<Answer
         if task.looks.output {
             output_s = scene.output(now);
         }
-        match loading.exact(loading.increments()) {
-            _ if !task.looks.truth => {}
-            Some(field) => found.deviations = errors(body, &body.surface.quadrature, field, now)?,
-            None => found.values = followed(case, body, now),
+        if task.looks.truth {
+            found.values = followed(case, loading, now);
+            if let Some(field) = loading.exact(loading.increments()) {
+                found.deviations = errors(body, &body.surface.quadrature, field, now)?;
+            }
         }
     }
     if let Some([reactions, _]) = answer.solution.as_ref().filter(|_| task.looks.truth) {

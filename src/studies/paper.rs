@@ -12,12 +12,18 @@ pub mod variants;
 
 pub use lookup::{PaperError, as_printed};
 
+use stickslip_methods::Tier;
+
 use crate::case::shipped;
 use crate::run::progress::Progress;
+use crate::run::verdict::Accuracy;
+use crate::studies::axes::{Axes, Subject, named};
 use crate::studies::cases::{Fields, Settings, run_case};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
+use crate::studies::measure::{Bench, here};
 use crate::studies::record::Record;
 use crate::studies::results::Results;
+use crate::studies::task::Looks;
 
 use converged_reactions::converged_reactions;
 use lookup::{case, choice};
@@ -61,6 +67,8 @@ pub struct Paper {
     pub converged: Vec<OrderRow>,
     /// Largest difference of the seven points between Model I with exact sub-cells and Model II [mm].
     pub beam_models_mm: f64,
+    /// The plate with sticking on Mesh I and finer ones, by the methods of the paper.
+    pub refined: Vec<Record>,
     /// Plate and beam by variants of the methods, if they were asked for.
     pub variants: Vec<Record>,
     /// How much was run.
@@ -129,8 +137,41 @@ pub fn run(
     paper.penalty = penalty_rows(&paper.results, numbers_only, progress)?;
     let full = extent == Extent::Full;
     (paper.convergence, paper.converged) = converged_reactions(full, &paper.table1, progress)?;
+    paper.refined = refined_plate(progress)?;
     if full {
         paper.variants = variant_runs(numbers_only, progress)?;
     }
     Ok(paper)
+}
+
+/// Refinement factors of Mesh I, and the friction coefficient, for time against error.
+const MESHES: [usize; 3] = [1, 2, 4];
+const FRICTION: f64 = 0.8;
+
+fn refined_plate(progress: &dyn Progress) -> Result<Vec<Record>, PaperError> {
+    let plate = case(CASES[0])?;
+    let choices = PAPER_METHODS.map(|name| choice(name, &[]));
+    let choices = choices.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let axes = Axes {
+        refine: MESHES.to_vec(),
+        friction: vec![vec![FRICTION]],
+        ..Axes::of(&plate)
+    };
+    let looks = Looks {
+        truth: true,
+        ..Looks::default()
+    };
+    let accuracies = [Accuracy::exactly(Tier::High.tolerance())];
+    let tasks = Subject::of(&plate).tasks(&axes, &named(&choices), &accuracies, looks);
+    let mut bench = Bench::default();
+    let answers = here(
+        &mut bench,
+        &tasks,
+        &choices,
+        1,
+        None,
+        progress,
+        &mut |_, _| (),
+    )?;
+    Ok(answers.into_iter().map(|own| own.record).collect())
 }

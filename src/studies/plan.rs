@@ -49,7 +49,16 @@ pub struct Plan {
     pub input: Vec<(String, String)>,
     /// The tasks.
     pub tasks: Vec<Task>,
+    /// Predicted time on one core, where that is known [s].
+    pub seconds: Option<f64>,
 }
+
+/// Finer meshes for time against total error, as far as they have not more cells in 2D and in 3D.
+const FINER: [[usize; 2]; 2] = [[2, 4], [2, 3]];
+const MOST_CELLS: [f64; 2] = [1e5, 7e3];
+/// Times of a task with its repetitions, and of a cell in 2D and 3D [s]: from studies of shipped cases.
+const FIXED_S: f64 = 0.1;
+const CELL_S: [f64; 2] = [2e-5, 5e-3];
 
 impl Plan {
     /// Reads a sweep file.
@@ -84,9 +93,14 @@ impl Plan {
         })
     }
 
-    /// Problems as they say themselves, by some methods, at every tier.
+    /// Time against error: problems as they say themselves by some methods, asked for one decade after the other, and on finer
+    /// meshes for tier high; those of files at every tier.
     pub fn of_problems(title: String, problems: &[Problem], choices: &[Choice]) -> Self {
-        let accuracies = Tier::ALL.map(|tier| Accuracy::exactly(tier.tolerance()));
+        let decades: Vec<Accuracy> = (2..=10)
+            .map(|d| Accuracy::exactly(10f64.powi(-d)))
+            .collect();
+        let tiers = Tier::ALL.map(|tier| Accuracy::exactly(tier.tolerance()));
+        let high = [Accuracy::exactly(Tier::High.tolerance())];
         let looks = Looks {
             truth: true,
             error: true,
@@ -94,10 +108,41 @@ impl Plan {
             ..Looks::default()
         };
         let methods = named(choices);
-        let of = |own: &Problem| own.subject.tasks(&own.axes, &methods, &accuracies, looks);
+        let of = |own: &Problem| {
+            let Some((dim, cells)) = own.mesh else {
+                return own.subject.tasks(&own.axes, &methods, &tiers, looks);
+            };
+            let mut finer = own.axes.clone();
+            let fits = |factor: &usize| {
+                cells * (*factor as f64).powi(dim as i32) <= MOST_CELLS[usize::from(dim == 3)]
+            };
+            let factors = FINER[usize::from(dim == 3)];
+            let all = own.axes.refine.iter().flat_map(|r| factors.map(|f| r * f));
+            finer.refine = all.filter(fits).collect();
+            let mut tasks = own.subject.tasks(&own.axes, &methods, &decades, looks);
+            tasks.extend(own.subject.tasks(&finer, &methods, &high, looks));
+            tasks
+        };
         let tasks = problems.iter().flat_map(of).collect();
         let input = problems.iter().filter_map(|own| own.subject.text());
-        Self::of(title, Repeats::DEFAULT, input.collect(), tasks)
+        let mut plan = Self::of(title, Repeats::DEFAULT, input.collect(), tasks);
+        plan.seconds = Some(plan.predicted(problems));
+        plan
+    }
+
+    /// Time on one core [s], from the cells of the meshes: within a factor of three where methods converge.
+    fn predicted(&self, problems: &[Problem]) -> f64 {
+        let of = |task: &Task| {
+            let own = problems
+                .iter()
+                .find(|own| own.subject.digest == task.asked.digest);
+            own.and_then(|own| own.mesh)
+                .map_or(FIXED_S, |(dim, cells)| {
+                    let cells = cells * (task.asked.refine as f64).powi(dim as i32);
+                    FIXED_S + CELL_S[usize::from(dim == 3)] * cells
+                })
+        };
+        self.tasks.iter().map(of).sum()
     }
 
     /// Blocks may overlap.
@@ -110,6 +155,7 @@ impl Plan {
             repeats,
             input,
             tasks: named.into_iter().map(|own| own.1).collect(),
+            seconds: None,
         }
     }
 }

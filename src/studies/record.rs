@@ -106,8 +106,11 @@ pub struct Found {
     pub solver_error: Option<SolverError>,
     /// Distance from the closed form; empty where the case has none, or without an honest verdict.
     pub deviations: Vec<Deviation>,
-    /// Quantities of interest at the end of the path, for cases without closed form; empty without an honest verdict.
+    /// Quantities of interest at the end of the path; empty without an honest verdict.
     pub values: Vec<Value>,
+    /// Relative error of the mesh in the energy norm with its kind, where a second mesh was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_error: Option<(f64, String)>,
     /// Why it gave up, where that was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Explanation>,
@@ -401,6 +404,7 @@ impl Found {
             solver_error: None,
             deviations: Vec::new(),
             values: Vec::new(),
+            energy_error: None,
             why: None,
             stops: Vec::new(),
             check: None,

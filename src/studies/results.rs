@@ -62,6 +62,38 @@ impl Results {
         .collect()
     }
 
+    /// Quantities of interest with a known error at the end of the path, by the first exact method on every problem.
+    pub fn with_errors(&self) -> Vec<QuantityRow<'_>> {
+        let mut seen = Vec::new();
+        let mut rows = self.quantities();
+        rows.retain(|row| {
+            let RunKey {
+                case,
+                mesh,
+                space,
+                friction,
+                ..
+            } = &row.key;
+            let problem = (
+                case.clone(),
+                mesh.clone(),
+                space.clone(),
+                friction.to_bits(),
+            );
+            let run = (row.key.method.clone(), row.key.increment);
+            let known = row.quantity.error.is_finite();
+            match seen.iter().find(|(own, _)| *own == problem) {
+                Some((_, own)) => known && *own == run,
+                None if known => {
+                    seen.push((problem, run));
+                    true
+                }
+                None => false,
+            }
+        });
+        rows
+    }
+
     /// Recorded iterations of every increment.
     pub fn history(&self) -> Vec<HistoryRow> {
         let all = self.answers.iter().flat_map(|own| {

@@ -150,7 +150,7 @@ fn quotes_and_commas_survive_the_csv() {
 #[test]
 fn negative_zero_and_round_off_residuals_print_as_zero() {
     let bundle = csv_bundle();
-    assert!(text(&bundle, "quantities.csv").contains(",reaction,top,x,0,N/m\n"));
+    assert!(text(&bundle, "quantities.csv").contains(",reaction,top,x,0,N/m,NaN,\n"));
     let mut reader = csv::Reader::from_reader(bundle.get("increments.csv").expect("a file"));
     let header = reader.headers().expect("a header").clone();
     let column = header.iter().position(|name| name == "equilibrium");

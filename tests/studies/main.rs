@@ -6,6 +6,7 @@ mod common;
 mod atlas;
 mod collections;
 mod converge;
+mod estimate;
 mod fclib;
 mod fuzz;
 mod interchange;

@@ -338,20 +338,20 @@ fn a_study_of_cases_and_its_list_are_views_of_the_same_plan() {
         text.lines().map(str::to_owned).collect::<Vec<_>>()
     };
     let ids = listed("");
-    // Friction values of each, two methods, three tiers.
-    assert_eq!(ids.len(), (1 + 3) * 2 * 3);
+    // Friction values of each, two methods, nine decades, two finer meshes.
+    assert_eq!(ids.len(), (1 + 3) * 2 * (9 + 2));
     let mut dealt = [listed("--shard 1/2"), listed("--shard 2/2")].concat();
     dealt.sort();
     assert_eq!(dealt, ids);
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
-    assert_eq!(measured(dir.path(), &format!("{cases} --untimed")), 24);
+    assert_eq!(measured(dir.path(), &format!("{cases} --untimed")), 88);
     let table = fs::read_to_string(dir.path().join("results/study/runs.csv")).unwrap();
     let rows = csv_rows(&table).into_iter();
     let mut found: Vec<String> = rows.map(|row| row["id"].clone()).collect();
     found.sort();
     assert_eq!(found, ids);
     // One case has the folder of its name; a sweep names its methods itself.
-    assert_eq!(measured(dir.path(), "cyclic -m nsgs --untimed"), 3);
+    assert_eq!(measured(dir.path(), "cyclic -m nsgs --untimed"), 11);
     assert!(dir.path().join("results/cyclic/index.html").exists());
     for (bad, part) in [
         ("study -m nsgs", "method"),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::discretisation::norms::side_of;
-use stickslip_xfem::discretisation::tips::{crack_size, tip_fronts, tip_intensities};
+use stickslip_xfem::discretisation::tips::{Loads, crack_size, tip_fronts, tip_intensities};
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::geometry::Point;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
@@ -33,9 +33,13 @@ pub(super) fn rows(
             let side = side.unwrap_or_else(|| side_of(body, x));
             field.body_force(x, side)
         };
-        let found = tip_intensities(body, surface, &tip, [&now.u, &now.p], &body_force)?;
-        let jump = found.jump.unwrap_or([f64::NAN; 3]);
-        let interaction = found.interaction.unwrap_or([f64::NAN; 2]);
+        let loads = Loads {
+            body_force: &body_force,
+            initial_stress: [[0.0; 3]; 3],
+        };
+        let found = tip_intensities(body, surface, &tip, [&now.u, &now.p], &loads)?;
+        let jump = found.jumps.first().copied().unwrap_or([f64::NAN; 3]);
+        let interaction = found.integrals.first().copied().unwrap_or([f64::NAN; 2]);
         let mut pairs = vec![
             ("k1_jump", jump[0], exact[0]),
             ("k2_jump", jump[1], exact[1]),

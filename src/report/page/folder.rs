@@ -10,7 +10,9 @@ use base64::engine::general_purpose::STANDARD;
 use super::{PageError, Sheet};
 use crate::files::bundle::FolderError;
 use crate::report::Bundle;
-use crate::report::figures::{Kind, performance, success, work_precision};
+use crate::report::figures::{
+    Kind, performance, success, time_against_solver_error, time_against_total_error,
+};
 
 /// A link to a file.
 pub struct Link {
@@ -32,7 +34,12 @@ const KINDS: [&str; 5] = ["csv", "md", "tex", "svg", "toml"];
 const SKIPPED: [&str; 1] = ["fields"];
 
 /// Kinds of figures that open the page, one of each.
-const HEADLINES: [&Kind; 3] = [&performance::KIND, &work_precision::KIND, &success::KIND];
+const HEADLINES: [&Kind; 4] = [
+    &time_against_total_error::KIND,
+    &performance::KIND,
+    &time_against_solver_error::KIND,
+    &success::KIND,
+];
 
 /// A report folder.
 #[derive(Debug)]

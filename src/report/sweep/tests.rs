@@ -253,8 +253,8 @@ fn every_cell_stands_in_its_table_and_every_problem_has_a_figure() {
     let increments = records.iter().map(|r| r.found.increments.len());
     assert_eq!(lines("increments.csv"), increments.sum::<usize>());
     let count = |start: &str| files.keys().filter(|path| path.starts_with(start)).count();
-    assert_eq!(count("figures/work_precision."), 12);
-    assert_eq!(count("figures/time_to_accuracy."), 4);
+    assert_eq!(count("figures/time_against_solver_error."), 12);
+    assert_eq!(count("figures/time_against_total_error."), 4);
     assert_eq!(count("figures/stages."), 4);
     assert_eq!(count("figures/profile."), 1);
 }

@@ -187,7 +187,7 @@ impl PointRow<'_> {
 }
 
 impl Row for PointRow<'_> {
-    const NAME: &'static str = "work_precision";
+    const NAME: &'static str = "time_against_solver_error";
     const TITLE: &'static str = "Solver error against work: a row per point of a curve, only honest verdicts with a solver error";
     const QUESTION: &'static str = "What does a method spend for which accuracy?";
     const READABLE: bool = false;

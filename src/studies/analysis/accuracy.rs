@@ -15,8 +15,8 @@ use crate::studies::record::Record;
 use crate::studies::task::Problem;
 use crate::studies::tips::Regularity;
 
-/// What figures show: the energy norm of the error; without a closed form the strain energy.
-const SHOWN: [&str; 2] = ["energy", "strain_energy"];
+/// Quantity of the figures: the error in the energy norm.
+const SHOWN: &str = "energy";
 
 /// One case, contact space and friction on several meshes.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,7 @@ pub struct Refinement {
 impl Refinement {
     /// The errors that figures show, none of what has one mesh.
     pub fn shown(&self) -> (Vec<&ErrorRow>, Option<&OrderRow>) {
-        let is_shown = |row: &ErrorRow| SHOWN.contains(&row.quantity.as_str()) && row.at.is_empty();
+        let is_shown = |row: &ErrorRow| row.quantity == SHOWN && row.at.is_empty();
         let mut orders = self.orders.iter().filter(|order| order.meshes > 1);
         let errors = self.errors.iter().filter(|row| is_shown(row));
         (

@@ -33,6 +33,17 @@ named! {
     }
 }
 
+/// Quantities whose errors are alike.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Dissipation, slips, gaps: beside their own value.
+    Face,
+    /// Energy and forces: small beside those of the whole body, whatever their own value.
+    Global,
+    /// Intensities: beside the largest of all tips.
+    Tip,
+}
+
 /// One quantity on a sequence of meshes.
 pub struct Course<'a> {
     /// Quantity, as in `quantities.csv`.
@@ -46,15 +57,18 @@ pub struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Whether its errors are small beside the whole body's energy or forces, whatever its own value.
-    fn is_global(&self) -> bool {
-        ["strain_energy", "reaction", "contact_force"].contains(&self.quantity)
+    fn kind(&self) -> Kind {
+        match self.quantity {
+            "strain_energy" | "reaction" | "contact_force" => Kind::Global,
+            "stress_intensity" | "energy_release_rate" => Kind::Tip,
+            _ => Kind::Face,
+        }
     }
 
     /// What its changes are relative to.
     fn size(&self) -> f64 {
-        match self.points.last() {
-            Some([_, value]) if !self.is_global() => value.abs(),
+        match (self.points.last(), self.kind()) {
+            (Some([_, value]), Kind::Face) => value.abs(),
             _ => self.scale,
         }
     }
@@ -85,15 +99,15 @@ pub fn error_bars(courses: &[Course<'_>], regularity: Regularity) -> Vec<Result<
         Regularity::Smooth | Regularity::FixedRadius => FACTOR,
         Regularity::Tip => FACTOR_OF_TIPS,
     };
-    let typical = [false, true].map(|global| {
-        let own = courses.iter().filter(|course| course.is_global() == global);
+    let typical = [Kind::Face, Kind::Global, Kind::Tip].map(|kind| {
+        let own = courses.iter().filter(|course| course.kind() == kind);
         let steps = own.filter_map(|course| Some(course.check().ok()?[0] / course.size()));
         // Nothing is relative to a value of 0.
         median(steps.filter(|step| step.is_finite()))
     });
     let bar = |course: &Course<'_>| {
         let [last, before] = course.check()?;
-        let typical = typical[usize::from(course.is_global())] * course.size();
+        let typical = typical[course.kind() as usize] * course.size();
         Ok(factor * last.max(before).max(typical))
     };
     courses.iter().map(bar).collect()

@@ -28,6 +28,8 @@ named! {
         Exact = "exact",
         /// The value on the finest mesh.
         Finest = "finest",
+        /// The strain energy on the finest mesh, for the energy norm.
+        Estimate = "estimate",
     }
 }
 
@@ -146,6 +148,13 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
         own.sort_by(|a, b| b.h.total_cmp(&a.h));
         let unmeasured = own.iter().filter(|s| s.measured == Measured::Nothing);
         errors.extend(unmeasured.map(|sample| unmeasured_row(sample)));
+        let norm = energy_norm(&own);
+        let (found, order) = norm.map_or((Vec::new(), None), |points| {
+            let (found, order) = sequence(points, Ok(f64::NAN));
+            (found, Some(order))
+        });
+        errors.extend(found);
+        orders.extend(order);
         let sequences = sequences(&own);
         let courses: Vec<Course<'_>> = sequences.iter().map(|points| course(points)).collect();
         let bars = error_bars(&courses, own[0].regularity);
@@ -156,6 +165,49 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
         }
     }
     (errors, orders)
+}
+
+/// Relative errors in the energy norm where there is no closed form, from the strain energies E of the meshes h₁ < h₂ …:
+///
+/// ```text
+///   ‖u − u_h‖/‖u‖ ≈ √(|E − E₁|/E₁ / (1 − (h₁/h)²))       on the finest that of h₂ times (h₁/h₂)^p, p = 1/2 where tips limit it
+/// ```
+///
+/// None where there is one mesh, or no energy.
+fn energy_norm<'a>(own: &[&'a Sample]) -> Option<Vec<Point<'a>>> {
+    let energy = |&sample: &&'a Sample| match &sample.measured {
+        Measured::Values(values) => {
+            let own = values.iter().find(|v| v.quantity == "strain_energy");
+            own.map(|v| (sample, v.value))
+        }
+        _ => None,
+    };
+    let mut all: Vec<(&Sample, f64)> = own.iter().filter_map(energy).collect();
+    let (finest, last) = all.pop().filter(|(_, energy)| *energy > 0.0)?;
+    let error = |&(sample, energy): &(&Sample, f64)| {
+        ((energy - last).abs() / last / (1.0 - (finest.h / sample.h).powi(2))).sqrt()
+    };
+    let mut errors: Vec<f64> = all.iter().map(error).collect();
+    let power = if finest.regularity == Regularity::Tip {
+        0.5
+    } else {
+        1.0
+    };
+    errors.push(errors.last()? * (finest.h / all.last()?.0.h).powf(power));
+    all.push((finest, last));
+    let point = |((sample, energy), error): ((&'a Sample, f64), f64)| Point {
+        sample,
+        row: ErrorRow {
+            quantity: "energy".into(),
+            found: (2.0 * energy).sqrt(),
+            reference: (2.0 * last).sqrt(),
+            kind: Some(Kind::Estimate),
+            error,
+            ..unmeasured_row(sample)
+        },
+        value: None,
+    };
+    Some(all.into_iter().zip(errors).map(point).collect())
 }
 
 /// Honest points by quantity and place, from coarse to fine. Quantities that vanish on every mesh are left out.
@@ -235,6 +287,10 @@ fn sequence(mut points: Vec<Point<'_>>, bar: Result<f64, NoBar>) -> (Vec<ErrorRo
                 let resolved =
                     |[_, v]: [f64; 2], [_, w]: [f64; 2]| (v - w).abs() > RESOLVED * value.norm;
                 (resolved(a, b) && resolved(b, c)).then(|| order_of_steps([a, b, c]))
+            }
+            // That of the energies: the error on the finest mesh follows from the one before.
+            (None, &[a, b, c]) if own[0].kind == Some(Kind::Estimate) => {
+                Some(order_of_steps([a, b, c].map(|[h, norm]| [h, norm * norm])) / 2.0)
             }
             _ => own.iter().all(|row| row.error >= ROUND_OFF).then(|| {
                 let errors: Vec<[f64; 2]> = own.iter().map(|row| [row.h, row.error]).collect();

@@ -7,6 +7,7 @@ use stickslip_methods::contact_wise_margin;
 use super::answer::Answer;
 use super::bench::{MeasureError, Scene};
 use crate::model::field_mesh::{FieldStep, field_step};
+use crate::model::intensities::{OF_TIPS, intensities};
 use crate::model::quantities::{PointState, point_states, quantities};
 use crate::model::snapshot::Snapshot;
 use crate::run::choice::Choice;
@@ -81,6 +82,16 @@ impl Seen {
         };
         if looks.quantities {
             step.quantities = quantities(case, loading.body(), now);
+            // The same by every method that is right: of those with pictures, and where a case expects some.
+            if looks.fields
+                || case
+                    .expects
+                    .iter()
+                    .any(|own| OF_TIPS.contains(&&own.quantity[..]))
+            {
+                let tips = intensities(loading, moment.number, now);
+                step.quantities.extend(tips);
+            }
         }
         if looks.curves {
             self.points.push(point_states(loading.body(), now));
@@ -126,7 +137,8 @@ impl Scene<'_> {
         };
         let (clock, body) = (Instant::now(), loading.body());
         let rows = quantities(case, body, now);
-        std::hint::black_box((rows, point_states(body, now), field_step(body, now)));
+        let tips = intensities(loading, loading.increments(), now);
+        std::hint::black_box((rows, tips, point_states(body, now), field_step(body, now)));
         clock.elapsed().as_secs_f64()
     }
 

@@ -14,6 +14,7 @@ impl Problem {
             subject: Subject::of(case),
             axes: Axes::of(case),
             cracks: Some(case.cracks.len()),
+            mesh: Some((case.model.dim(), case.mesh.grid.cells())),
         }
     }
 }

@@ -12,6 +12,8 @@ pub struct Problem {
     pub axes: Axes,
     /// Number of its cracks, which a friction coefficient of the sweep is for; none: it has no axes but methods and tolerances.
     pub cracks: Option<usize>,
+    /// Dimension, and number of cells at refinement 1; none of a file.
+    pub mesh: Option<(usize, f64)>,
 }
 
 /// Largest number of problems that one entry of a sweep file asks for: all are read or drawn before anything is measured.

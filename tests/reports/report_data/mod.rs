@@ -151,11 +151,8 @@ fn add_run(results: &mut Results, key: RunKey) {
     let wobble = |i: usize| 1.0 + 0.3 * (i as f64 * 1.7).sin();
     let residual = |i: usize| 0.4 * f64::powi(rate, i as i32) * wobble(i);
     let reaction = |(component, value): (&str, f64)| Quantity {
-        name: "reaction".into(),
-        at: "top".into(),
-        component: component.into(),
-        value,
         unit: "N/m".into(),
+        ..Quantity::new(["reaction", "top", component], value, 2)
     };
     let step = Step {
         iterations,
@@ -545,11 +542,8 @@ pub fn cycle() -> Results {
     let mut results = Results::default();
     for (method, count) in [("latin", 12), ("b-newton", 12), ("nsgs", 7)] {
         let quantity = |name: &str, value: f64, unit: &str| Quantity {
-            name: name.into(),
-            at: "crack-1".into(),
-            component: "a".into(),
-            value,
             unit: unit.into(),
+            ..Quantity::new([name, "crack-1", "a"], value, 2)
         };
         let path = path.iter().take(count).enumerate();
         let steps = path.map(|(index, [slip, shear])| Step {

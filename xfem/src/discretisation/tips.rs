@@ -8,8 +8,8 @@ use crate::cut::crack::{Crack, Geometry};
 use crate::cut::placement::{self, cells_at};
 use crate::fields::sampling::ComparisonPoint;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, norm, sub};
-use crate::intensity::interaction::{Domain, Fields, interaction};
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::intensity::interaction::{Domain, Fields, Obstacle, interaction};
 use crate::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use crate::stiffness::cell_matrix::CellError;
 
@@ -18,12 +18,14 @@ use super::norms::RULE;
 
 /// Reach of the jump fit behind the tip, in lengths of the crack. It must not shrink with the mesh: with branch functions on
 /// the tip's cell only, the jump at a given number of cells behind the tip keeps its relative error on every mesh.
-const FIT_REACH: f64 = 0.25;
+pub const FIT_REACH: f64 = 0.25;
 /// The nearest part of the reach is left out, and at least this many cells.
 const FIT_LEFT_OUT: f64 = 0.2;
 const FIT_CELLS_LEFT_OUT: f64 = 1.0;
-/// Radius of the domain of the interaction integral, in cells: the first that stands alone around the tip.
-const DOMAIN_CELLS: [f64; 2] = [3.0, 2.0];
+/// Radii of the domain of the interaction integral, in cells, the preferred one first.
+const DOMAIN_CELLS: [f64; 3] = [3.0, 2.0, 4.0];
+/// Further reaches of the jump fit, in that of the first.
+const REACHES: [f64; 3] = [1.0, 0.8, 0.6];
 
 /// Points of a 3D front at which intensities are found, evenly spaced in its parameter.
 const FRONT_POINTS: usize = 8;
@@ -85,12 +87,48 @@ pub fn crack_size(crack: &Crack) -> f64 {
 }
 
 /// K_I, K_II[, K_III] at a tip [Pa √m].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TipIntensities {
-    /// By the jump fit; `None`: too few surface points behind the tip.
-    pub jump: Option<[f64; 3]>,
-    /// By the interaction integral; `None`: no room for its domain.
-    pub interaction: Option<[f64; 2]>,
+    /// By the jump fit over several reaches, the preferred one first; none: too few surface points behind the tip.
+    pub jumps: Vec<[f64; 3]>,
+    /// By the interaction integral over the domains that stand alone around the tip, the preferred one first; none in 3D.
+    pub integrals: Vec<[f64; 2]>,
+    /// What the smallest domain reaches, where none stands alone.
+    pub obstacle: Option<Obstacle>,
+}
+
+impl TipIntensities {
+    /// The value: by the integral in 2D, by the jump in 3D; how far the others are from it at most, infinite where there are none.
+    pub fn best(&self) -> Option<[[f64; 3]; 2]> {
+        let integrals = self.integrals.iter().map(|k| [k[0], k[1], 0.0]);
+        let plane = !self.integrals.is_empty() || self.obstacle.is_some();
+        let own: Vec<[f64; 3]> = if plane {
+            integrals
+                .clone()
+                .chain(self.jumps.first().copied())
+                .collect()
+        } else {
+            self.jumps.clone()
+        };
+        let value = if plane {
+            integrals.clone().next()
+        } else {
+            own.first().copied()
+        }?;
+        let apart = |c: usize| {
+            let others = own[1..].iter().map(|k| (k[c] - value[c]).abs());
+            others.reduce(f64::max).unwrap_or(f64::INFINITY)
+        };
+        Some([value, [0, 1, 2].map(apart)])
+    }
+}
+
+/// What acts beside the displacement, for the interaction integral.
+pub struct Loads<'a> {
+    /// Force per volume at a point and side [N/m³].
+    pub body_force: &'a (dyn Fn(&Point, Option<f64>) -> Point + Sync),
+    /// Uniform initial stress [Pa].
+    pub initial_stress: [Point; 3],
 }
 
 /// Intensities at a tip from the discrete solution: all unknowns and the contact forces; `surface`: quadrature points of all
@@ -103,7 +141,7 @@ pub fn tip_intensities(
     surface: &[SurfacePoint],
     tip: &TipFrame,
     [u, p]: [&[f64]; 2],
-    body_force: &(dyn Fn(&Point, Option<f64>) -> Point + Sync),
+    loads: &Loads<'_>,
 ) -> Result<TipIntensities, CellError> {
     let integrator = body.integrator();
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
@@ -112,27 +150,33 @@ pub fn tip_intensities(
     for cell in cells_at(mesh, &tip.position) {
         size = size.max(mesh.map(cell).longest_edge());
     }
-    let to = FIT_REACH * crack_size(crack);
-    let range = FitRange {
-        from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
-        to,
-    };
+    let ranges = REACHES.map(|part| {
+        let to = part * FIT_REACH * crack_size(crack);
+        FitRange {
+            from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
+            to,
+        }
+    });
     if dim == 3 {
         let jump = |x: &Point| jump_at(&integrator, tip.crack, x, u);
+        let fit = |range| jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump);
         return Ok(TipIntensities {
-            jump: jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump),
-            interaction: None,
+            jumps: ranges.into_iter().filter_map(fit).collect(),
+            integrals: Vec::new(),
+            obstacle: None,
         });
     }
     let own = surface.iter().filter(|p| p.crack == crack.number);
     let samples = own
         .map(|p| (p, norm(&sub(&p.x, &tip.position))))
-        .filter(|(_, distance)| *distance <= to)
+        .filter(|(_, distance)| *distance <= ranges[0].to)
         .map(|(p, distance)| JumpSample {
             distance,
             jump: p.jump(&integrator, u),
             weight: p.weight,
         });
+    let samples: Vec<JumpSample> = samples.collect();
+    let fit = |range| jump_fit(tip, body.lame, range, samples.iter().copied());
     let faces: Vec<(&SurfacePoint, Point)> = surface
         .iter()
         .map(|q| {
@@ -141,7 +185,9 @@ pub fn tip_intensities(
             for (value, axis) in local.iter().zip(&q.frame) {
                 traction = add_scaled(&traction, *value, axis);
             }
-            (q, traction)
+            // Of the strain alone: the normal points into side 1, on which σ₀ exerts −σ₀ n.
+            let implied = loads.initial_stress.map(|row| dot(&row, &q.frame[0]));
+            (q, add_scaled(&traction, 1.0, &implied))
         })
         .collect();
     let gradients = |cell: usize, points: &[ComparisonPoint]| {
@@ -156,22 +202,25 @@ pub fn tip_intensities(
     let fields = Fields {
         gradients: &gradients,
         faces: &faces,
-        body_force,
+        body_force: loads.body_force,
     };
-    let mut integral = None;
+    let (mut integrals, mut obstacles) = (Vec::new(), Vec::new());
     for cells in DOMAIN_CELLS {
         let domain = Domain {
             radius: cells * size,
             fronts: &fronts,
             rule: RULE,
         };
-        integral = interaction(&integrator, tip, domain, &fields)?;
-        if integral.is_some() {
-            break;
+        match interaction(&integrator, tip, domain, &fields)? {
+            Ok(found) => integrals.push(found),
+            // The smaller one may reach less.
+            Err(obstacle) => obstacles.push(obstacle),
         }
     }
+    let obstacle = obstacles.get(1).copied().filter(|_| integrals.is_empty());
     Ok(TipIntensities {
-        jump: jump_fit(tip, body.lame, range, samples),
-        interaction: integral,
+        jumps: ranges.into_iter().filter_map(fit).collect(),
+        integrals,
+        obstacle,
     })
 }

@@ -55,16 +55,36 @@ pub struct Domain<'a> {
     pub rule: usize,
 }
 
-/// K_I and K_II [Pa √m] at a tip in its frame.
-///
-/// `None` if the domain does not stand alone around the tip: it is too small to hold the cells at the tip, or it reaches the
-/// outline, another tip or another crack.
+/// Why a domain does not stand alone around its tip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Obstacle {
+    /// It is smaller than the cells at the tip.
+    #[error("the cells at the tip")]
+    Cells,
+    /// It reaches the outline of the body.
+    #[error("a side of the body")]
+    Side,
+    /// It reaches another tip.
+    #[error("another tip")]
+    Tip,
+    /// It reaches another crack.
+    #[error("another crack")]
+    Crack,
+    /// The crack leaves the line of the tip within it.
+    #[error("a bend of the crack")]
+    Bend,
+}
+
+/// Distance of a straight crack from the line of its tip, over that from the tip.
+const STRAIGHT: f64 = 0.05;
+
+/// K_I and K_II [Pa √m] at a tip in its frame, or what keeps the domain from standing alone around the tip.
 pub fn interaction(
     integrator: &CellIntegrator<'_>,
     tip: &TipFrame,
     domain: Domain<'_>,
     fields: &Fields<'_>,
-) -> Result<Option<[f64; 2]>, CellError> {
+) -> Result<Result<[f64; 2], Obstacle>, CellError> {
     let CellIntegrator { mesh, lame, .. } = *integrator;
     let inside: Vec<bool> = mesh
         .nodes
@@ -76,12 +96,20 @@ pub fn interaction(
         nodes.filter(|&&node| inside[node as usize]).count()
     };
     let cells: Vec<usize> = (0..mesh.cell_count()).filter(|&c| count(c) > 0).collect();
-    if !stands_alone(integrator, tip, domain.fronts, &inside, &cells)
-        || cells_at(mesh, &tip.position)
-            .iter()
-            .any(|&cell| count(cell) < mesh.kind.nodes())
-    {
-        return Ok(None);
+    let mut at_tip = cells_at(mesh, &tip.position).into_iter();
+    if at_tip.any(|cell| count(cell) < mesh.kind.nodes()) {
+        return Ok(Err(Obstacle::Cells));
+    }
+    if let Some(obstacle) = obstacle(integrator, tip, domain.fronts, &inside, &cells) {
+        return Ok(Err(obstacle));
+    }
+    let own_faces = fields.faces.iter().filter(|(p, _)| count(p.cell) > 0);
+    let bends = |(p, _): &(&SurfacePoint, Point)| {
+        let away = sub(&p.x, &tip.position);
+        dot(&away, &tip.normal).abs() > STRAIGHT * norm(&away)
+    };
+    if own_faces.clone().any(bends) {
+        return Ok(Err(Obstacle::Bend));
     }
     let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
     let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
@@ -121,33 +149,30 @@ pub fn interaction(
     for part in parts {
         total = [0, 1].map(|k| total[k] + part[k]);
     }
-    for (point, traction) in fields.faces {
-        if count(point.cell) == 0 {
-            continue;
-        }
+    for (point, traction) in own_faces {
         let (q, _) = weight(mesh, point.cell, &inside, &point.xi);
         for (sum, mode) in total.iter_mut().zip(&modes) {
             let [one, two] = [1.0, -1.0].map(|side| ahead(&mode.at(&point.x, Some(side)).1, tip));
             *sum -= point.weight * q * dot(traction, &sub(&one, &two));
         }
     }
-    Ok(Some(total.map(|i| 0.5 * plane_modulus(lame) * i)))
+    Ok(Ok(total.map(|i| 0.5 * plane_modulus(lame) * i)))
 }
 
-/// Whether nothing but the crack of the tip disturbs the domain.
-fn stands_alone(
+/// Another thing than the crack of the tip that disturbs the domain.
+fn obstacle(
     integrator: &CellIntegrator<'_>,
     tip: &TipFrame,
     fronts: &[TipFrame],
     inside: &[bool],
     cells: &[usize],
-) -> bool {
+) -> Option<Obstacle> {
     let mesh = integrator.mesh;
     let outline = mesh.sides.keys().flat_map(|side| mesh.side_nodes(side));
     if outline.into_iter().any(|node| inside[node]) {
-        return false;
+        return Some(Obstacle::Side);
     }
-    cells.iter().all(|&cell| {
+    cells.iter().find_map(|&cell| {
         let size = mesh.map(cell).diagonal();
         let other_crack = integrator.enrichment.partition(cell).is_some_and(|p| {
             let sides = p.parts.iter().flat_map(|part| &part.sides);
@@ -157,7 +182,11 @@ fn stands_alone(
             norm(&sub(&front.position, &tip.position)) > 1e-9 * size
                 && reference_position(mesh, cell, &front.position, 1e-9).is_some()
         });
-        !other_crack && !other_tip
+        match (other_tip, other_crack) {
+            (true, _) => Some(Obstacle::Tip),
+            (false, true) => Some(Obstacle::Crack),
+            (false, false) => None,
+        }
     })
 }
 

@@ -40,6 +40,11 @@ impl GridSpec {
         }
     }
 
+    /// Number of cells.
+    pub fn cells(&self) -> f64 {
+        self.lines.iter().map(|l| (l.len() - 1) as f64).product()
+    }
+
     /// Lowest and highest corner; third entries 0 in 2D [m].
     pub fn extents(&self) -> [Point; 2] {
         let (mut low, mut high) = ([0.0; 3], [0.0; 3]);

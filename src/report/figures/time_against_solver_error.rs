@@ -13,11 +13,10 @@ use crate::studies::task::Problem;
 
 /// What it is.
 pub static KIND: Kind = Kind {
-    file: "work_precision.*.svg",
+    file: "time_against_solver_error.*.svg",
     question: "What does every digit cost with every method?",
     shows: "Distance of the answer from the converged solution of the same discrete problem (energy norm) against \
-            the time of the method and its iterations, along the tolerance, or along an option for methods with laws \
-            of their own.",
+            the time of the method, along the tolerance, or along an option for methods with laws of their own.",
 };
 
 /// Points of a curve: problems that were solved at the three tiers alone have no figure.
@@ -59,11 +58,7 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
     let labels: Vec<&str> = shown.iter().map(|own| own.label.as_str()).collect();
     let further: Vec<&str> = fastest.iter().map(|(label, _)| *label).collect();
     let y = Axis::log(&format!("solver error, energy norm of {} [-]", italic("u")));
-    let axes = [
-        Axis::log("time of the method [s]"),
-        Axis::counts("iterations [-]"),
-    ];
-    let mut panels = axes.map(|x| Panel::new(x, y.clone(), 66.0));
+    let mut panel = Panel::new(Axis::log("time of the method [s]"), y, 80.0);
     for (own, (label, style)) in shown.iter().zip(looks(&labels, &further)) {
         let timed: Vec<(&Point<'_>, Timing)> = own
             .points
@@ -71,14 +66,11 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
             .filter_map(|p| Some((p, p.time?)))
             .collect();
         let points = timed.iter().map(|(p, t)| [t.median_s, error(p)]).collect();
-        let mut by_time = Series::new(&label, style.clone(), points);
+        let mut by_time = Series::new(label, style.clone(), points);
         if !style.behind {
             by_time.intervals = timed.iter().map(|(_, t)| [t.low_s, t.high_s]).collect();
         }
-        panels[0].series.push(by_time);
-        let count = |p: &Point<'_>| p.record.found.sum(|i| i.iterations) as f64;
-        let points = own.points.iter().map(|p| [count(p), error(p)]).collect();
-        panels[1].series.push(Series::new(label, style, points));
+        panel.series.push(by_time);
     }
     let title = fastest.map_or("Work against precision".to_owned(), |(label, seconds)| {
         let ms = significant(1e3 * seconds, 2);
@@ -96,5 +88,5 @@ fn figure(problem: &Problem, found: &[Sequence<'_>], caveat: &str) -> Figure {
         friction(problem.friction.first().copied().unwrap_or(0.0)),
         value(RESIDUAL_FLOOR),
     );
-    Figure::new(&title, &caption, 2, panels.into())
+    Figure::new(&title, &caption, 1, vec![panel])
 }

@@ -1,0 +1,194 @@
+//! Errors of the values on one mesh, estimated from a second one: with cells twice as wide where the refinement factor is even,
+//! otherwise half as wide.
+//!
+//! ```text
+//!   bar of the finer value       see error_bar
+//!   bar of the coarser value     4/3 of it: 2 max(|v₂ − v₁|, m) on halved cells
+//!   energy norm                  ‖u − u_h‖ / ‖u‖ ≈ √(4/3 |E₂ − E₁|/E₂) on the coarser mesh, half of it on the finer one
+//! ```
+//!
+//! The mesh alone is measured, by one exact method. With friction the energy is no minimum: an estimate, no bound. A case with a
+//! closed form has it for the quantities that it gives.
+
+use std::collections::BTreeMap;
+
+use super::error_bar::NoBar;
+use super::orders::{self, ErrorRow};
+use super::{Measured, Sample};
+use crate::case::Case;
+use crate::model::quantities::{ESTIMATE, EXACT, Quantity};
+use crate::run::choice::Choice;
+use crate::run::progress::Progress;
+use crate::run::verdict::Accuracy;
+use crate::studies::axes::{Axes, Subject, named};
+use crate::studies::measure::{Bench, RunError, here};
+use crate::studies::record::Record;
+use crate::studies::results::Results;
+use crate::studies::task::Looks;
+
+/// Bar of a coarser value, in that of the finer one.
+const OF_COARSER: f64 = 4.0 / 3.0;
+
+/// Errors of the quantities of one problem at the end of its path; quantity and place as in `quantities.csv`.
+#[derive(Debug, Default)]
+pub struct Errors {
+    /// Bars by quantity and place.
+    pub bars: BTreeMap<[String; 2], Result<f64, NoBar>>,
+    /// Values of the closed form by quantity and place.
+    pub exact: BTreeMap<[String; 2], f64>,
+    /// Relative error in the energy norm, of a closed form or estimated.
+    pub energy: Option<(f64, &'static str)>,
+    /// Values on the mesh.
+    pub found: BTreeMap<[String; 2], f64>,
+}
+
+/// Puts the errors of their mesh beside the quantities of all honest runs of a case, at the end of their paths.
+///
+/// # Errors
+/// Of the case or its discretisation on the second mesh; what the method does wrong there leaves no estimate.
+pub fn estimate(
+    case: &Case,
+    choice: &Choice,
+    results: &mut Results,
+    progress: &dyn Progress,
+) -> Result<(), RunError> {
+    let mut meshes: Vec<usize> = case.sweep.refine.clone();
+    meshes.sort_unstable();
+    meshes.dedup();
+    for refine in meshes {
+        let all = errors_of_mesh(case, refine, choice, progress)?;
+        let own = |record: &Record| record.asked.case == case.name && record.asked.refine == refine;
+        let records = results.answers.iter_mut().map(|answer| &mut answer.record);
+        for record in records.filter(|record| own(record) && record.found.verdict.is_honest()) {
+            if let Some(errors) = all.get(&record.asked.mu().to_bits()) {
+                record.found.energy_error = errors.energy.map(|(error, kind)| (error, kind.into()));
+                let last = record.found.increments.last_mut();
+                let quantities = last.into_iter().flat_map(|step| &mut step.quantities);
+                quantities.for_each(|quantity| errors.put(quantity));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Errors on a mesh by the bits of the friction coefficient.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn errors_of_mesh(
+    case: &Case,
+    refine: usize,
+    choice: &Choice,
+    progress: &dyn Progress,
+) -> Result<BTreeMap<u64, Errors>, RunError> {
+    let (pair, part) = match refine % 2 {
+        0 => ([refine / 2, refine], 1.0),
+        _ => ([refine, 2 * refine], OF_COARSER),
+    };
+    let axes = Axes {
+        refine: pair.to_vec(),
+        ..Axes::of(case)
+    };
+    let looks = Looks {
+        truth: true,
+        ..Looks::default()
+    };
+    let (choices, accuracy) = (std::slice::from_ref(choice), Accuracy::of(case, case.tier));
+    let tasks = Subject::given(case).tasks(&axes, &named(choices), &[accuracy], looks);
+    let mut bench = Bench::default();
+    let answers = here(
+        &mut bench,
+        &tasks,
+        choices,
+        1,
+        None,
+        progress,
+        &mut |_, _| (),
+    )?;
+    let (mut samples, mut all) = (Vec::new(), BTreeMap::<u64, Errors>::new());
+    for record in answers.into_iter().map(|own| own.record) {
+        let own = all.entry(record.asked.mu().to_bits()).or_default();
+        if record.asked.refine == refine {
+            for value in &record.found.values {
+                let place = [value.quantity.clone(), value.at.clone()];
+                own.found.insert(place, value.value);
+            }
+            for deviation in &record.found.deviations {
+                let [name, at] = [&deviation.quantity, &deviation.at];
+                if name == "energy" && at.is_empty() {
+                    own.energy = Some((deviation.error, EXACT));
+                } else if let Some(place) =
+                    place(name, at, record.found.problem.as_ref().map(|p| p.dim))
+                {
+                    own.exact.insert(place, deviation.exact);
+                }
+            }
+        }
+        if let Some(mut sample) = Sample::of(&record, case).filter(|_| record.is_honest()) {
+            sample.measured = Measured::Values(record.found.values);
+            samples.push(sample);
+        }
+    }
+    let (errors, _) = orders::rows(&samples);
+    for row in errors.iter().filter(|row| row.refine == pair[1]) {
+        let own = all.entry(row.variant.friction.to_bits()).or_default();
+        let place = [row.quantity.clone(), row.at.clone()];
+        let bar = row.no_bar.map_or(Ok(part * row.error_bar), Err);
+        own.bars.insert(place, bar);
+        let coarser = |other: &&ErrorRow| {
+            let same = (&other.quantity, &other.at, &other.variant)
+                == (&row.quantity, &row.at, &row.variant);
+            same && other.refine == pair[0]
+        };
+        let other = errors.iter().find(coarser);
+        if let ("strain_energy", Some(other), None) = (&row.quantity[..], other, own.energy) {
+            let norm = (OF_COARSER * (row.found - other.found).abs() / row.found).sqrt();
+            let here = if refine == pair[0] { norm } else { norm / 2.0 };
+            own.energy = Some((here, ESTIMATE));
+        }
+    }
+    Ok(all)
+}
+
+/// Name and place in `quantities.csv` of what a closed form gives; none of what stands there otherwise.
+fn place(name: &str, at: &str, dim: Option<usize>) -> Option<[String; 2]> {
+    let modes = match dim {
+        Some(2) => ["k1_interaction", "k2_interaction", ""],
+        _ => ["k1_jump", "k2_jump", "k3_jump"],
+    };
+    let mode = modes.iter().position(|mode| *mode == name);
+    match (name, mode) {
+        ("dissipation", _) => Some([name.into(), at.into()]),
+        (_, Some(mode)) => {
+            let component = crate::model::intensities::MODES[mode];
+            Some(["stress_intensity".into(), format!("{at} {component}")])
+        }
+        _ => None,
+    }
+}
+
+fn name_and_place(quantity: &Quantity) -> [String; 2] {
+    let at = format!("{} {}", quantity.at, quantity.component);
+    [quantity.name.clone(), at.trim().to_owned()]
+}
+
+impl Errors {
+    fn put(&self, quantity: &mut Quantity) {
+        let place = name_and_place(quantity);
+        if let Some(exact) = self.exact.get(&place) {
+            quantity.error = (quantity.value - exact).abs();
+            quantity.error_kind = EXACT.into();
+            return;
+        }
+        match self.bars.get(&place) {
+            Some(Ok(bar)) => {
+                quantity.error = *bar;
+                quantity.error_kind = ESTIMATE.into();
+            }
+            Some(Err(reason)) if quantity.error_kind.is_empty() => {
+                quantity.error_kind = format!("no estimate: {reason}");
+            }
+            _ => {}
+        }
+    }
+}
