@@ -1,5 +1,6 @@
 //! The command line: verbs, arguments, what is printed.
 
+mod advice;
 mod arguments;
 mod check;
 mod conform;

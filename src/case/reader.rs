@@ -373,8 +373,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// `, did you mean ...?` where one of the names is close.
-fn suggestion(found: &str, names: &[&str]) -> String {
+/// `, did you mean ...?` where one of the names is close, or holds what was found.
+pub fn suggestion(found: &str, names: &[&str]) -> String {
     // Names of the format have at most 17 letters; nothing much longer can be a slip of the finger.
     if found.len() > 32 {
         return String::new();
@@ -383,12 +383,15 @@ fn suggestion(found: &str, names: &[&str]) -> String {
         .iter()
         .map(|name| (levenshtein(found, name), *name))
         .min();
-    match nearest {
-        Some((errors, name)) if errors <= 2.max(name.len() / 3) => {
-            format!(", did you mean `{name}`?")
-        }
-        _ => String::new(),
-    }
+    let close = nearest.filter(|(errors, name)| *errors <= 2.max(name.len() / 3));
+    let holds = || {
+        names
+            .iter()
+            .copied()
+            .find(|name| found.len() > 3 && name.contains(found))
+    };
+    let meant = close.map(|own| own.1).or_else(holds);
+    meant.map_or(String::new(), |name| format!(", did you mean `{name}`?"))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use stickslip_xfem::cut::arms::Joined;
 use stickslip_xfem::enrichment::Zone;
 use stickslip_xfem::geometry::{norm, sub};
 
+use super::advice;
 use super::error::CliError;
 use super::output::say;
 use crate::case;
@@ -64,6 +65,9 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
             let supports = support_extents(&case, &body);
             lines.extend(supports.iter().map(support_line));
             lines.iter().for_each(|line| say(format_args!("{line}")));
+            let of = |crack: usize| body.points.iter().filter(|own| own.crack == crack).count();
+            let points: Vec<usize> = (0..case.cracks.len()).map(of).collect();
+            advice::on_case(&case, &points);
         }
     }
     Ok(true)

@@ -1,6 +1,7 @@
 //! Why a command ended without an answer.
 
 use crate::case::CaseError;
+use crate::case::reader::suggestion;
 use crate::files::bundle::FolderError;
 use crate::report::ReportError;
 use crate::report::page::PageError;
@@ -41,7 +42,7 @@ pub enum CliError {
     #[error(transparent)]
     ProblemFile(#[from] ProblemFileError),
     /// A name nobody knows.
-    #[error("unknown {what} `{name}`, known: {known}")]
+    #[error("unknown {what} `{name}`{}, known: {known}", suggestion(name, &known.split(", ").collect::<Vec<_>>()))]
     Unknown {
         /// Method or case.
         what: &'static str,

@@ -2,6 +2,7 @@
 
 use stickslip_methods::Tier;
 
+use super::advice;
 use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::{conclude, show};
@@ -98,6 +99,9 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
         results.append(own);
     }
     bar.finish();
+    cases
+        .iter()
+        .for_each(|case| advice::on_results(case, &results));
     let mut bundle = standard::bundle(&results, &provenance_with(settings, &given))?;
     add_input(&mut bundle, Subject::texts(&cases))?;
     page::add(&mut bundle)?;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use stickslip_methods::{Enforcement, Method, OptionError, OptionSpec, OptionValue, Options};
 
+use crate::case::reader::suggestion;
 use crate::case::{Case, CaseError, MethodSpec};
 use crate::run::outside::{OUTSIDE, Outside, Program};
 use crate::run::registry::{method, methods};
@@ -194,7 +195,7 @@ pub fn method_names() -> String {
 #[derive(Debug, thiserror::Error)]
 pub enum ChoiceError {
     /// A name nobody knows.
-    #[error("unknown method `{name}`, known: {known}")]
+    #[error("unknown method `{name}`{}, known: {known}", suggestion(name, &known.split(", ").collect::<Vec<_>>()))]
     Unknown {
         /// As given.
         name: String,

@@ -58,7 +58,7 @@ const FINER: [[usize; 2]; 2] = [[2, 4], [2, 3]];
 const MOST_CELLS: [f64; 2] = [1e5, 7e3];
 /// Times of a task with its repetitions, and of a cell in 2D and 3D [s]: from studies of shipped cases.
 const FIXED_S: f64 = 0.1;
-const CELL_S: [f64; 2] = [2e-5, 5e-3];
+const CELL_S: [f64; 2] = [8e-5, 5e-3];
 
 impl Plan {
     /// Reads a sweep file.

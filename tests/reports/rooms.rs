@@ -268,8 +268,8 @@ fn imports_run_one_way() {
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 13] = [
     ("methods/src", 18_000), ("xfem/src", 22_330), ("src/files", 2075), ("src/case", 3200), ("src/model", 2875), ("src/run", 2200),
-    ("src/studies", 16_510), ("src/report", 10_315), ("src/cli", 1900), ("benches", 570), ("methods/tests", 3200), ("xfem/tests", 125),
-    ("tests", 17_745),
+    ("src/studies", 16_510), ("src/report", 10_315), ("src/cli", 1975), ("benches", 570), ("methods/tests", 3200), ("xfem/tests", 125),
+    ("tests", 17_810),
 ];
 
 /// Lines of all sources in a folder and below.
