@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 use std::process::Command;
 
-/// What decides about results; a changed report does not make the build dirty.
+/// Files that decide about results; a changed report does not make the build dirty.
 const SOURCES: [&str; 7] = [
     "src",
     "methods",

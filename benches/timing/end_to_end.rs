@@ -17,7 +17,7 @@ use stickslip_timing::{ALL_METHODS, EXACT, PROBLEMS, left_out};
 
 const SETTINGS: Settings = Settings::PLAIN;
 
-/// What a user gets: the case as shipped.
+/// The case as shipped.
 fn run(file: &str, text: &str, choices: &[Choice]) -> Results {
     let case = case::parse(file, text).expect("shipped cases are valid");
     run_case(&case, choices, SETTINGS, &Quiet).expect("shipped cases can be run")

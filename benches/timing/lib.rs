@@ -14,7 +14,7 @@ pub const FACTORISATION: &str = "factorisation";
 /// Condensation to the contact points.
 pub const CONDENSATION: &str = "condensation";
 
-/// What a method does once for a system.
+/// Work of a method once for a system.
 pub const PREPARE: &str = "prepare";
 /// The solve of an increment without the work on all unknowns of the body.
 pub const ENFORCEMENT: &str = "enforcement";
@@ -26,7 +26,7 @@ pub const ALL_METHODS: &str = "all methods";
 
 /// Name of a benchmark.
 pub struct BenchmarkName {
-    /// What is measured on which problem, e.g. `enforcement/plate_mesh1 88x88 mu=0.8`.
+    /// Name of the measurement and its problem, e.g. `enforcement/plate_mesh1 88x88 mu=0.8`.
     pub group: String,
     /// Stage, e.g. `prepare`.
     pub function: String,

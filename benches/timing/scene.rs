@@ -79,7 +79,7 @@ impl Scene {
         }
     }
 
-    /// What the judge says of a method on this increment. Afterwards all is computed that methods share.
+    /// Verdict of the judge on a method on this increment. Afterwards all is computed that methods share.
     pub fn judge(&self, choice: &Choice) -> Verdict {
         let solver = Solver::new(choice, &self.system);
         solver.map_or_else(

@@ -1,4 +1,4 @@
-//! What a method is given, what it returns, and who judges it: body, increment, state, laws, judge, options, registry.
+//! The seam of a method, its answer, and its judge: body, increment, state, laws, judge, options, registry.
 
 pub(crate) mod barrier_law;
 pub(crate) mod elastic;

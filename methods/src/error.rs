@@ -1,7 +1,6 @@
-//! What can be wrong with the input of a method.
+//! Faults of the input of a method.
 
-/// Everything that keeps a method from starting. Failure to converge is not among it: that is a
-/// [`Status`](super::Status).
+/// Everything that keeps a method from starting. Failure to converge is not among it: that is a [`Status`](super::Status).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MethodError {
@@ -22,7 +21,7 @@ pub enum MethodError {
         what: &'static str,
         /// Where.
         index: usize,
-        /// What is wrong there.
+        /// The fault there.
         reason: &'static str,
     },
     /// A number is NaN, infinite or outside its range.

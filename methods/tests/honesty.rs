@@ -1,4 +1,4 @@
-//! What every registered method must say about itself: claims that hold, statuses, refusals.
+//! Duties of every registered method: claims that hold, statuses, refusals.
 
 use stickslip_methods::*;
 

@@ -1,4 +1,4 @@
-//! What must not change the answer of a method, and what its answers must conserve.
+//! Changes that must not change the answer of a method, and quantities that its answers must conserve.
 
 use stickslip_methods::*;
 

@@ -176,7 +176,7 @@ fn solve_reaches_the_equilibrium_that_the_judge_demands() {
     assert_eq!((counters.factorisations, counters.condensations), (1, 0));
 }
 
-/// What the judge finds of an answer to 1e-9.
+/// Findings of the judge on an answer to 1e-9.
 fn judged(m: &Method, s: &ContactSystem, load: &Load, outcome: &Outcome) -> f64 {
     let judged = judge(s, load, &outcome.state);
     let holds = judged.violation <= 1e-9 && judged.equilibrium < 1e-12;

@@ -24,7 +24,7 @@ fn contacts(count: usize, coupling: f64) -> (Rows, Arc<Elastic>) {
     (w, body)
 }
 
-/// What the answers from several starts together say.
+/// Conclusion from the answers from several starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Uniqueness {
     /// Nothing closes without contact forces, so that every method answers with the open crack: starts do not matter.

@@ -98,7 +98,7 @@ fn every_exact_coulomb_solution_minimises_the_tresca_problem_of_its_own_bound() 
     }
 }
 
-/// What clarabel cannot reach is not claimed; one or two Newton steps reach it.
+/// Residuals that clarabel cannot reach are not claimed; one or two Newton steps reach them.
 #[test]
 fn unpolished_fixed_points_end_at_their_floor_and_say_so() {
     let mut rng = Random(30);

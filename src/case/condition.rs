@@ -53,7 +53,7 @@ struct Bound {
 }
 
 impl Bound {
-    /// What must be >= 0, or > 0; 0 within δ.
+    /// A number that must be >= 0, or > 0; 0 within δ.
     fn level(&self, x: &Point, delta: f64) -> f64 {
         snapped(self.sign * (self.number - x[self.axis]), delta)
     }
@@ -84,7 +84,7 @@ impl Bound {
     }
 }
 
-/// What is wrong with a condition; `at` is the byte range inside its text.
+/// Fault of a condition; `at` is the byte range inside its text.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ConditionError {
     pub(super) at: Range<usize>,
@@ -109,7 +109,7 @@ impl Condition {
         self.rule.range(axis)
     }
 
-    /// What fulfils any of the conditions.
+    /// Union of the conditions.
     pub(super) fn union(conditions: Vec<Condition>) -> Self {
         let texts: Vec<&str> = conditions.iter().map(|c| c.text.as_str()).collect();
         Condition {

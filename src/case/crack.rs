@@ -50,9 +50,10 @@ pub(super) fn crack(value: Value<'_>, dim: usize) -> Result<CrackSpec, CaseError
     let (key, geometry) = table.exactly_one(&KEYS[..5])?;
     let flat = ["points_m", "arc"].contains(&key);
     if flat != (dim == 2) {
-        let (allowed, needed) = match flat {
-            true => ("plane, disc or ellipse in a solid", "a 2D model"),
-            false => ("points_m or arc in 2D", "model = \"solid\""),
+        let (allowed, needed) = if flat {
+            ("plane, disc or ellipse in a solid", "a 2D model")
+        } else {
+            ("points_m or arc in 2D", "model = \"solid\"")
         };
         return Err(geometry.refuse(allowed, format_args!("`{key}` needs {needed}")));
     }
@@ -175,7 +176,7 @@ fn meet([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     if apart(side(a, b, p), side(a, b, q)) || apart(side(p, q, a), side(p, q, b)) {
         return false;
     }
-    // What remains meets, or lies on one line: there the boxes decide.
+    // The rest meets, or lies on one line: there the boxes decide.
     (0..2).all(|k| a[k].min(b[k]) <= p[k].max(q[k]) && p[k].min(q[k]) <= a[k].max(b[k]))
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a case file, and where.
+//! Faults of a case file, with their places.
 
 use std::fmt;
 use std::ops::Range;
@@ -77,7 +77,7 @@ impl CaseError {
         &self.0.allowed
     }
 
-    /// What is wrong.
+    /// The fault, in words.
     pub fn message(&self) -> &str {
         &self.0.message
     }

@@ -50,7 +50,7 @@ pub struct Expect {
     pub kind: ExpectKind,
     /// Book, paper, table, derivation.
     pub source: String,
-    /// What had to be assumed.
+    /// The assumptions that were made.
     pub assumptions: Vec<String>,
     /// True for a documented limitation: the number must be found outside its tolerance.
     pub missed: bool,
@@ -86,7 +86,7 @@ const EXPECT: [&str; 15] = [
     "kind", "source", "assumptions", "outcome",
 ];
 
-/// What the runs of a case offer to an expectation; one that no run can meet would never be tested.
+/// Numbers that the runs of a case offer to an expectation; one that no run can meet would never be tested.
 pub(super) struct Runs {
     frictions: Vec<f64>,
     refine: Vec<usize>,

@@ -27,7 +27,7 @@ impl Region {
         condition.is_none_or(|c| c.holds(x, delta))
     }
 
-    /// What the condition holds of a convex polygon or segment on the sides, and the rest; see [`Condition::split`].
+    /// Part of a convex polygon or segment on the sides that the condition holds, and the rest; see [`Condition::split`].
     pub fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2] {
         match &self.condition {
             Some(condition) => condition.split(polygon, delta),
@@ -95,7 +95,7 @@ pub enum Amount {
 pub struct LoadSpec {
     /// Where the table stands in the file.
     pub span: Span,
-    /// What it is and where it acts.
+    /// Kind and place.
     pub kind: LoadKind,
     /// Evolution of stated numbers; values of the closed form follow the history of `[exact]`.
     pub history: History,
@@ -129,7 +129,7 @@ pub struct CrackSide {
     pub side: f64,
 }
 
-/// What a support or load may refer to.
+/// Places that a support or load may refer to.
 pub(super) struct Scene {
     /// Space dimension.
     pub(super) dim: usize,

@@ -34,8 +34,7 @@ impl MeshSpec {
 pub struct Sweep {
     /// Friction coefficients; empty: every crack keeps its own.
     pub friction: Vec<f64>,
-    /// Mesh refinement factors >= 1, at least one: every cell of the base mesh is divided by this number in each
-    /// direction.
+    /// Mesh refinement factors >= 1, at least one: every cell of the base mesh is divided by this number in each direction.
     pub refine: Vec<usize>,
 }
 
@@ -259,9 +258,10 @@ pub(super) fn sweep(root: &Table<'_>, mesh: &MeshSpec) -> Result<Sweep, CaseErro
         count_cells(v, &cells, factor)?;
         let mut gaps = mesh.grid.lines.iter().flat_map(|line| line.windows(2));
         let narrow = gaps.any(|w| !wide_enough(w[0], w[1], factor));
-        match narrow {
-            true => Err(without_width(v, "cells")),
-            false => Ok(factor),
+        if narrow {
+            Err(without_width(v, "cells"))
+        } else {
+            Ok(factor)
         }
     };
     let frictions = table.optional("friction", |v| {

@@ -53,7 +53,7 @@ pub struct Case {
     pub quadrature: Quadrature,
     /// Load path.
     pub path: PathSpec,
-    /// What the case is run for.
+    /// Purpose of the runs of the case.
     pub sweep: Sweep,
     /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
     pub methods: Vec<MethodSpec>,

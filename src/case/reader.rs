@@ -202,9 +202,10 @@ impl<'a> Value<'a> {
     pub(crate) fn list_of(&self, length: usize) -> Result<Vec<Value<'a>>, CaseError> {
         let list = self.list()?;
         let found = format!("{} entries", list.len());
-        match list.len() == length {
-            true => Ok(list),
-            false => Err(self.refuse(format_args!("{length} entries"), found)),
+        if list.len() == length {
+            Ok(list)
+        } else {
+            Err(self.refuse(format_args!("{length} entries"), found))
         }
     }
 
@@ -296,7 +297,7 @@ impl<'a> Table<'a> {
         self.map.get(key).map(|item| self.source.value(item))
     }
 
-    /// What a key that may be absent says.
+    /// Value of a key that may be absent.
     pub(crate) fn optional<T>(
         &self,
         key: &str,
@@ -379,17 +380,10 @@ pub fn suggestion(found: &str, names: &[&str]) -> String {
     if found.len() > 32 {
         return String::new();
     }
-    let nearest = names
-        .iter()
-        .map(|name| (levenshtein(found, name), *name))
-        .min();
+    let names = || names.iter().copied();
+    let nearest = names().map(|name| (levenshtein(found, name), name)).min();
     let close = nearest.filter(|(errors, name)| *errors <= 2.max(name.len() / 3));
-    let holds = || {
-        names
-            .iter()
-            .copied()
-            .find(|name| found.len() > 3 && name.contains(found))
-    };
+    let holds = || names().find(|name| found.len() > 3 && name.contains(found));
     let meant = close.map(|own| own.1).or_else(holds);
     meant.map_or(String::new(), |name| format!(", did you mean `{name}`?"))
 }

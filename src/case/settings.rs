@@ -1,4 +1,4 @@
-//! What a case says in a few words each: quadrature, material, load path, methods.
+//! Short parts of a case: quadrature, material, load path, methods.
 
 use stickslip_xfem::material::{Dilatation, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;

@@ -5,8 +5,8 @@ use crate::case::Case;
 use crate::report::number::significant;
 use crate::studies::results::Results;
 
-/// Stiffness below which a number was probably meant in other units [Pa].
-const SOFT_PA: f64 = 1e6;
+/// Stiffnesses that were probably meant in other units [Pa]; up to 1 the numbers have none.
+const SOFT_PA: std::ops::Range<f64> = 1.0..1e6;
 /// Mean strain above which small displacements are a wrong model [-].
 const LARGE_STRAIN: f64 = 0.05;
 /// Contact points below which a crack says little.
@@ -19,7 +19,7 @@ pub fn on_case(case: &Case, points: &[usize]) {
         warn(format_args!("{name}: no crack, nothing to compare"));
     }
     let young = case.material.young;
-    if young < SOFT_PA {
+    if young > SOFT_PA.start && young < SOFT_PA.end {
         let young = significant(young, 3);
         warn(format_args!(
             "{name}: young_pa = {young}: the unit is Pa, 1 GPa is 1e9"

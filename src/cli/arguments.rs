@@ -1,4 +1,4 @@
-//! What several verbs ask of their arguments: cases and methods by name, no two of one name.
+//! Common arguments of verbs: cases and methods by name, no two of one name.
 
 use std::any::TypeId;
 use std::collections::BTreeSet;
@@ -105,7 +105,7 @@ const HOW: [&str; 4] = ["out", "force", "jobs", "repeats"];
 /// Largest file whose contents stand in a plan [bytes]: of larger ones there is the name alone.
 const DIGESTED: u64 = 64 << 20;
 
-/// What a command line asks for, by the names of its options, those by default too; files with digests of their contents.
+/// Requests of a command line, by the names of its options, those by default too; files with digests of their contents.
 pub fn plan(command: &clap::Command, matches: &clap::ArgMatches) -> Plan {
     let below = matches.subcommand();
     if let Some((own, matches)) = below.and_then(|(n, m)| Some((command.find_subcommand(n)?, m))) {

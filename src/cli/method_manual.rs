@@ -44,7 +44,7 @@ pub fn page(method: &Method) -> String {
     text
 }
 
-/// What the method needs with its default options.
+/// Needs of the method with its default options.
 fn needs(method: &Method) -> Needs {
     let defaults = Options::new(method.options, &[]);
     defaults.map_or_else(|_| Needs::default(), |own| (method.build)(&own).needs())

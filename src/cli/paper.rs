@@ -35,10 +35,7 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let (table1, table2) = paper::first_tables(settings, &bar)?;
     bar.finish();
     say(format_args!("{}", report::tables(&table1, &table2)));
-    let extent = match full {
-        true => Extent::Full,
-        false => Extent::Quick,
-    };
+    let extent = if full { Extent::Full } else { Extent::Quick };
     let bar = Bar::new();
     let paper = paper::run(extent, settings, &bar)?;
     bar.finish();

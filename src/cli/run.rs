@@ -71,7 +71,7 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
         },
         starts: usize::from(arguments.starts),
         why: if arguments.explain {
-            Why::Cure
+            Why::Remedy
         } else {
             Why::Cause
         },

@@ -55,7 +55,7 @@ fn list_text() -> String {
     text
 }
 
-/// What is known of a name; names come before files and folders, so that `./methods` is a folder.
+/// Meaning of a name; names come before files and folders, so that `./methods` is a folder.
 fn show_text(name: &str) -> Result<String, CliError> {
     let path = Path::new(name);
     if name == "methods" {

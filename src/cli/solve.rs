@@ -78,7 +78,7 @@ pub fn run(args: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         curves: true,
         truth: true,
         why: true,
-        cure: args.explain,
+        remedy: args.explain,
         ..Looks::default()
     };
     let accuracy = Accuracy::exactly(args.tier.tolerance());

@@ -76,7 +76,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// What is asked for.
+/// The request.
 fn planned(what: &[PathBuf], method: &[String]) -> Result<Plan, CliError> {
     let shipped = |name: &Path| SHIPPED.into_iter().find(|own| name == Path::new(own.0));
     let sweep = match what {

@@ -11,7 +11,7 @@ pub enum FolderError {
     /// The file system refused.
     #[error("cannot {action} `{}`: {source}", path.display())]
     Io {
-        /// What was tried, e.g. `create folder`.
+        /// The attempt, e.g. `create folder`.
         action: &'static str,
         /// Where.
         path: PathBuf,
@@ -21,7 +21,7 @@ pub enum FolderError {
     /// Something that this program did not write stands where it writes, or a link.
     #[error("`{}` is in the way: {why}; move it away, or choose another folder", path.display())]
     InTheWay {
-        /// What stands there.
+        /// The text there.
         path: PathBuf,
         /// Why it is not replaced.
         why: &'static str,
@@ -34,7 +34,7 @@ pub enum FolderError {
     OtherPlan {
         /// The folder.
         path: PathBuf,
-        /// What differs.
+        /// The difference.
         what: String,
         /// There.
         there: String,

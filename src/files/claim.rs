@@ -27,15 +27,15 @@ const MOST: u64 = 16 << 20;
 /// Most characters shown of where plans differ.
 const SHOWN: usize = 100;
 
-/// What is said to who opens it.
+/// The message to who opens it.
 const HEAD: &str =
     "# What stickslip wrote here. It replaces and removes these files, and no others.\n";
 
-/// What decides the results in a folder, by name: the command, cases, methods, options. Empty: files of several plans,
+/// The facts that decide the results in a folder, by name: the command, cases, methods, options. Empty: files of several plans,
 /// told apart by their names.
 pub type Plan = BTreeMap<String, String>;
 
-/// What comes first where plans differ.
+/// The first thing in which plans differ.
 pub const COMMAND: &str = "command";
 
 /// The plan of a command without options.
@@ -158,9 +158,10 @@ impl Claim {
     /// # Errors
     /// Those of [`Claim::commit`].
     pub fn mark(&self) -> Result<(), FolderError> {
-        match Written::read(&self.dir)?.plan == self.plan {
-            true => Ok(()),
-            false => self.commit(&Bundle::new()),
+        if Written::read(&self.dir)?.plan == self.plan {
+            Ok(())
+        } else {
+            self.commit(&Bundle::new())
         }
     }
 
@@ -247,7 +248,7 @@ impl Claim {
         fs::write(&partial, contents)
             .and_then(|()| fs::rename(&partial, &place))
             .map_err(|e| {
-                // What the user is told is why it could not be written.
+                // The user is told why it could not be written.
                 let _ = fs::remove_file(&partial);
                 FolderError::io("write file", &place, e)
             })

@@ -18,7 +18,7 @@ pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
-/// What a missing number is read as.
+/// Value of a missing number.
 pub fn nothing() -> f64 {
     f64::NAN
 }

@@ -36,7 +36,7 @@ pub fn read_text(path: &Path, most: u64) -> Result<String> {
     })
 }
 
-/// What is left of an open file.
+/// The rest of an open file.
 ///
 /// # Errors
 /// Those of [`read`].

@@ -1,9 +1,9 @@
-//! What may be shown of texts that come from elsewhere: names of files, titles, what programs print.
+//! Visible forms of texts that come from elsewhere: names of files, titles, what programs print.
 //!
 //! A control character commands the terminal that shows it and breaks the line of the table that holds it. The signs of CSV,
 //! HTML and LaTeX are escaped by who writes them.
 
-/// What a label may be.
+/// Rule for labels.
 pub(crate) const LABEL: &str = "one line of visible text";
 
 /// Whether a text may name something on terminals, in tables and in figures.
@@ -23,9 +23,12 @@ pub(crate) fn visible(text: &str) -> String {
 
 /// As [`visible`], at most so many characters of it.
 pub(crate) fn excerpt(text: &str, most: usize) -> String {
-    let shown = |c| match is_visible(c) {
-        true => c,
-        false => char::REPLACEMENT_CHARACTER,
+    let shown = |c| {
+        if is_visible(c) {
+            c
+        } else {
+            char::REPLACEMENT_CHARACTER
+        }
     };
     let mut chars = text.chars();
     let mut excerpt: String = chars.by_ref().take(most).map(shown).collect();

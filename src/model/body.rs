@@ -64,7 +64,7 @@ pub struct Setup {
     pub traction_s: f64,
 }
 
-/// What the runs on a body will ask of it: a body pays for nothing else.
+/// Demands of the runs on a body: it pays for nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Needs {
     /// No run has friction: only normal rows are ever condensed.
@@ -77,7 +77,7 @@ impl Body {
     /// Discretises a case on its mesh refined by a factor.
     ///
     /// # Errors
-    /// What only the discretisation finds wrong with the case, at its place in the file.
+    /// Fault of the case that only the discretisation finds, at its place in the file.
     pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
         let grid = case.mesh.grid.refined(refine);
         memory::check(case, &grid)?;

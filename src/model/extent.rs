@@ -1,4 +1,4 @@
-//! What the loads and supports of a case amount to on a mesh: for who checks whether it says what was meant.
+//! Amounts of the loads and supports of a case on a mesh: for who checks whether it says what was meant.
 
 use std::collections::BTreeSet;
 
@@ -19,7 +19,7 @@ use crate::model::refusals::load_error;
 pub struct LoadExtent {
     /// Number in the case, from 1.
     pub number: usize,
-    /// What acts, and where.
+    /// Loads with their places.
     pub what: String,
     /// Sum of the nodal forces, `dim` entries, at history factor 1; of the closed form at the end [N, in 2D N/m].
     pub force: Vec<f64>,

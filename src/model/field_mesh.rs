@@ -233,7 +233,7 @@ impl<'a> Vertices<'a> {
     }
 }
 
-/// What a part of a cut cell is drawn as: a polygon in 2D, triangles if it is not convex; in 3D a hexahedron where one
+/// Shapes that a part of a cut cell is drawn as: a polygon in 2D, triangles if it is not convex; in 3D a hexahedron where one
 /// crack parts two opposite faces, tetrahedra elsewhere.
 fn pieces_of(
     body: &Body,

@@ -1,4 +1,4 @@
-//! What acts on a body in the increments of a run: nodal forces, prescribed displacements, the closed form.
+//! Loads on a body in the increments of a run: nodal forces, prescribed displacements, the closed form.
 //!
 //! ```text
 //!   K u = f_ext + Bᵀ P over all unknowns, u = u_free + u_prescribed:
@@ -29,7 +29,7 @@ struct ExactStep {
     force: Vec<f64>,
 }
 
-/// What acts on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
+/// Loads on a body along the path of a case, for one friction coefficient. Increments are counted from 1 to the last
 /// of the path. Where something acts at time 0 the state there is solved first, as increment 0 from a body at rest.
 pub struct Loading<'a> {
     body: &'a Body,

@@ -15,7 +15,7 @@ use crate::case::{Case, CaseError};
 /// A and B in bytes, in 2D and 3D.
 const BYTES: [[f64; 2]; 2] = [[2200.0, 65.0], [20_000.0, 700.0]];
 
-/// What a run on so many cells takes at least [GB].
+/// Least memory of a run on so many cells [GB].
 pub fn predicted_gb(dim: usize, cells: f64) -> f64 {
     let [by_cell, by_entry] = BYTES[usize::from(dim == 3)];
     let entries = match dim {
@@ -57,9 +57,10 @@ fn fits(case: &Case, grid: &GridSpec, machine: f64) -> Result<(), CaseError> {
     let (mut low, mut high) = (1.0, cells);
     while high - low > 1e-3 * low {
         let middle: f64 = 0.5 * (low + high);
-        match predicted_gb(dim, middle) <= machine {
-            true => low = middle,
-            false => high = middle,
+        if predicted_gb(dim, middle) <= machine {
+            low = middle
+        } else {
+            high = middle
         }
     }
     let message = format!(

@@ -1,4 +1,4 @@
-//! What only the discretisation finds wrong with a case, said at the place in its file.
+//! Faults of a case that only the discretisation finds, told at the place in its file.
 
 use stickslip_methods::MethodError;
 use stickslip_xfem::discretisation::DiscretisationError;
@@ -25,7 +25,7 @@ pub enum BodyError {
     Method(#[from] MethodError),
 }
 
-/// What the discretisation refuses, at its place in the file; `label` of the mesh.
+/// Refusal by the discretisation, at its place in the file; `label` of the mesh.
 pub fn refused(case: &Case, label: &str, error: DiscretisationError) -> BodyError {
     match error {
         DiscretisationError::Folded(mut fold) => {

@@ -123,7 +123,7 @@ impl Snapshot {
 }
 
 impl Snapshot {
-    /// What of it is no finite number, if anything: then there is no answer, whatever the residuals say.
+    /// The part of it that is no finite number, if any: then there is no answer, whatever the residuals say.
     pub fn not_finite(&self) -> Option<&'static str> {
         let Work {
             external,
@@ -183,9 +183,9 @@ pub struct Work {
     pub external: f64,
     /// Of the initial stress.
     pub initial_stress: f64,
-    /// What the faces take, by the trapezoid of all components.
+    /// Work that the faces take, by the trapezoid of all components.
     pub faces: f64,
-    /// What friction takes, per crack of the case; each >= 0.
+    /// Work of friction, per crack of the case; each >= 0.
     pub friction: Vec<f64>,
     /// Residual of the identity in this increment, relative to the sum of its terms' sizes, with the stored energies at both
     /// ends as two terms [-].
@@ -209,7 +209,7 @@ impl Work {
         self.friction.iter().sum()
     }
 
-    /// What the faces take beside friction, relative to the work of friction; 0 where friction does none [-].
+    /// Work that the faces take beside friction, relative to the work of friction; 0 where friction does none [-].
     pub fn path_error(&self) -> f64 {
         let friction = self.dissipation();
         if friction > 0.0 {

@@ -1,4 +1,4 @@
-//! What can go wrong while results become files.
+//! Failures while results become files.
 
 use crate::files::bundle::FolderError;
 
@@ -14,7 +14,7 @@ pub enum ReportError {
     FieldMesh {
         /// Array or picture name.
         name: String,
-        /// What does not fit, with sizes.
+        /// The misfit, with sizes.
         reason: String,
     },
     /// The drawing library failed.
@@ -29,7 +29,7 @@ pub enum ReportError {
 }
 
 impl ReportError {
-    /// What a picture lacks for a figure.
+    /// Lack of a picture for a figure.
     pub(crate) fn field_mesh(name: &str, reason: String) -> Self {
         Self::FieldMesh {
             name: name.to_owned(),

@@ -35,13 +35,13 @@ pub fn bundle(paper: &Paper, provenance: &Provenance) -> Result<Bundle, ReportEr
     Ok(bundle)
 }
 
-/// What the terminal shows at first: the tables of the paper.
+/// Text of the terminal at first: the tables of the paper.
 pub fn tables(table1: &[Table1Row], table2: &[Table2Row]) -> String {
     let tables = [readable(table1, ""), readable(table2, "")];
     tables.map(|table| table.terminal() + "\n").concat()
 }
 
-/// What the terminal shows at the end.
+/// Text of the terminal at the end.
 pub fn text(paper: &Paper) -> String {
     let tables = [
         readable(&paper.penalty, ""),

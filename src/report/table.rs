@@ -33,11 +33,11 @@ pub enum Order<R> {
 pub trait Row: Sized {
     /// Name of the files without ending.
     const NAME: &'static str;
-    /// What the table is: its caption.
+    /// Caption of the table.
     const TITLE: &'static str;
     /// The reader's question that it answers.
     const QUESTION: &'static str;
-    /// What else its chapter in `stickslip show schema` says; may be empty.
+    /// Further text of its chapter in `stickslip show schema`; may be empty.
     const NOTES: &'static str = "";
     /// Whether it is written as Markdown and LaTeX too, for reading.
     const READABLE: bool = true;
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(headings, ["name", "h", "error", "solve"]);
         assert_eq!(table.rows[0], ["a", "9.00", "–", "2e-7"]);
         assert_eq!(table.rows[1], ["a", "10.00", "12.3", "0.12"]);
-        // What did not do what it claims shows no time.
+        // A run that did not do what it claims shows no time.
         assert_eq!(table.rows[2], ["b_1", "10.00", "–", "–"]);
         assert!(
             table

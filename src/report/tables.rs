@@ -32,7 +32,7 @@ use crate::studies::record::Record;
 use crate::studies::rows::{self, ExpectRow, HistoryRow, IncrementRow, QuantityRow};
 use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow};
 
-/// What a table or figure is about: a section of the page, a chapter of `stickslip show schema`.
+/// Subject of a table or figure: a section of the page, a chapter of `stickslip show schema`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Chapter {
     /// The founding paper.
@@ -94,7 +94,7 @@ impl Chapter {
         }
     }
 
-    /// What the reader finds there, and which command writes it.
+    /// Contents for the reader, and the command that writes them.
     pub fn lead(self) -> &'static str {
         match self {
             Self::Paper => {
@@ -134,7 +134,7 @@ impl Chapter {
 pub struct OfStudy {
     /// Where it stands.
     pub chapter: Chapter,
-    /// What it is.
+    /// The kind.
     pub about: Description,
     /// Adds it.
     pub add: Add,

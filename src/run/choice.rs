@@ -207,7 +207,7 @@ pub enum ChoiceError {
     Option {
         /// As given.
         argument: String,
-        /// What is wrong.
+        /// The fault, in words.
         source: OptionError,
     },
     /// A file that is no program.
@@ -215,7 +215,7 @@ pub enum ChoiceError {
     Program {
         /// As given.
         path: String,
-        /// What is wrong.
+        /// The fault, in words.
         why: String,
     },
     /// An option that is no `key=value`.

@@ -5,13 +5,13 @@ use stickslip_methods::{Outcome, PointStatus, Residuals};
 
 use crate::run::verdict::Verdict;
 
-/// What came of an increment.
+/// Result of an increment.
 pub struct JudgedIncrement {
     /// Claim × check.
     pub verdict: Verdict,
     /// Work up to its end; `None` if the method never started.
     pub work: Option<Work>,
-    /// What was judged; `None` if the method never started or failed with an error.
+    /// The judged answer; `None` if the method never started or failed with an error.
     pub judged: Option<Judged>,
     /// `[[u]]` by contact row [m] of an answer that is solved at tier high: what lower tiers leave open is as large as what tells
     /// two answers apart.
@@ -29,7 +29,7 @@ pub struct Work {
     pub condensation_s: f64,
     /// Preparation of the method, counted with the first increment [s].
     pub prepare_s: f64,
-    /// What the method took, without what it shares with others [s].
+    /// Time of the method, without what it shares with others [s].
     pub solve: Seconds,
     /// Whether the traction operator was needed.
     pub traction: bool,

@@ -4,16 +4,16 @@ use stickslip_methods::{ContactSystem, Load};
 
 use crate::model::loading::Loading;
 
-/// What methods are given: a contact system, and what acts on it.
+/// The problem that methods are given: a contact system, and the load on it.
 #[derive(Clone, Copy)]
 pub struct Posed<'a> {
     /// The contact system, with its friction coefficients.
     pub system: &'a ContactSystem,
-    /// What acts on it.
+    /// The load on it.
     pub loads: Loads<'a>,
 }
 
-/// What acts on a system, increment by increment.
+/// Loads on a system, increment by increment.
 #[derive(Clone, Copy)]
 pub enum Loads<'a> {
     /// A body along the path of its case.

@@ -32,7 +32,7 @@ use answer::{Said, reactions, said};
 use guard::Guarded;
 use process::{Ended, Running, denied};
 
-/// What the argument of a method from outside begins with.
+/// Beginning of the argument of a method from outside.
 pub const OUTSIDE: &str = "exec:";
 
 /// Seconds for one increment, unless said otherwise.
@@ -200,7 +200,7 @@ impl Enforcement for Outside {
     }
 
     fn needs(&self) -> Needs {
-        // What the program cannot treat it declines.
+        // The program declines what it cannot treat.
         Needs::ANY_OPERATOR
     }
 
@@ -238,7 +238,7 @@ fn failed(reason: impl Into<String>) -> MethodError {
     MethodError::Failed { reason }
 }
 
-/// What a call came to.
+/// End of a call.
 struct Answer {
     status: Status,
     said: Said,
@@ -287,17 +287,18 @@ impl Folder {
         };
         let said = said(&ended.printed).map_err(failed)?;
         let found = self.read(form);
-        Ok(match gave_up {
-            false => Answer {
-                status: Status::Converged,
-                found: Some(found.map_err(failed)?),
-                said,
-            },
-            true => Answer {
+        Ok(if gave_up {
+            Answer {
                 status: said.status.unwrap_or(Status::Unexplained),
                 found: found.ok(),
                 said,
-            },
+            }
+        } else {
+            Answer {
+                status: Status::Converged,
+                found: Some(found.map_err(failed)?),
+                said,
+            }
         })
     }
 

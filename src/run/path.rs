@@ -18,7 +18,7 @@ use crate::run::verdict::{Accuracy, Verdict};
 /// One run before it starts.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
-    /// What is solved.
+    /// The problem.
     pub posed: Posed<'a>,
     /// By which method.
     pub choice: &'a Choice,
@@ -43,7 +43,7 @@ pub enum Guess {
 pub struct Moment<'a, 's> {
     /// Its number.
     pub number: usize,
-    /// What came of it.
+    /// The result.
     pub solved: &'a JudgedIncrement,
     /// The mechanics of a body at its end, of an honest verdict only.
     pub now: Option<&'a Snapshot>,
@@ -210,7 +210,7 @@ impl<'a> Solver<'a> {
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
         let (solved, solve) = self.solve(increment);
         let judged = solved.and_then(|mut outcome| {
-            // What nothing can balance is no fault of the method.
+            // A load that nothing can balance is no fault of the method.
             if outcome.status != Status::Converged && no_equilibrium(increment)? {
                 outcome.status = Status::NoEquilibrium;
             }

@@ -35,7 +35,7 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// What is known about this build and this machine; `threads` as the run used them.
+    /// Facts about this build and this machine; `threads` as the run used them.
     pub fn collect(threads: usize) -> Self {
         Self {
             command: command(),
@@ -72,9 +72,10 @@ impl Provenance {
 fn command() -> String {
     let quoted = |word: &str| {
         let plain = |c: char| c.is_alphanumeric() || "-_=:,./+%@".contains(c);
-        match !word.is_empty() && word.chars().all(plain) {
-            true => word.to_owned(),
-            false => format!("'{}'", word.replace('\'', "'\\''")),
+        if !word.is_empty() && word.chars().all(plain) {
+            word.to_owned()
+        } else {
+            format!("'{}'", word.replace('\'', "'\\''"))
         }
     };
     let words = std::env::args_os().skip(1);

@@ -28,7 +28,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// What is asked for is what is accepted.
+    /// Accepts what is asked for.
     pub fn exactly(tolerance: f64) -> Self {
         Self {
             asked: tolerance,
@@ -61,7 +61,7 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// What a run is worth. Files hold it as the text that `Display` writes and `FromStr` reads.
+/// Worth of a run. Files hold it as the text that `Display` writes and `FromStr` reads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Verdict {
@@ -88,7 +88,7 @@ pub enum Verdict {
     OutOfMemory,
 }
 
-/// What a kind of verdict says about a run.
+/// Meaning of a kind of verdict for a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
     /// The run did what it said.
@@ -146,7 +146,7 @@ pub const GIVE_UPS: &[Status] = match Status::ALL {
     all => all,
 };
 
-/// What tables say in place of a verdict where there is no such run.
+/// Words of tables in place of a verdict where there is no such run.
 pub const NOT_RUN: &str = "not run";
 
 impl Verdict {

@@ -1,4 +1,4 @@
-//! What a set of records says about the methods: pure functions of the records, no files, no clock.
+//! Conclusions from a set of records about the methods: pure functions of the records, no files, no clock.
 //!
 //! Two questions are kept apart, as qpbenchmark does: *success* is what a method says of itself, *correct* is what the judge
 //! says of it. Only right answers are compared, and times stand beside honest verdicts only: [`published_times`] is the one

@@ -21,7 +21,7 @@ pub struct Subject {
     pub digest: String,
 }
 
-/// What a problem is combined with.
+/// Axes that a problem is combined with.
 #[derive(Debug, Clone)]
 pub struct Axes {
     /// Refinement factors.

@@ -21,11 +21,11 @@ pub struct Settings {
     pub tier: Option<Tier>,
     /// Runs at the same time; times are recorded for one only.
     pub jobs: usize,
-    /// Whose fields are kept for pictures.
+    /// Methods whose fields are kept for pictures.
     pub fields: Fields,
     /// Starts from which every exact method looks for answers; 1: that of the increment alone, whose runs are kept.
     pub starts: usize,
-    /// What is asked of a run that gave up.
+    /// Questions to a run that gave up.
     pub why: Why,
 }
 
@@ -40,7 +40,7 @@ impl Settings {
     };
 }
 
-/// What is asked of a run that gave up.
+/// Questions to a run that gave up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
     /// Nothing.
@@ -48,7 +48,7 @@ pub enum Why {
     /// Why.
     Cause,
     /// Why, and what solves the problem instead.
-    Cure,
+    Remedy,
 }
 
 /// Methods whose fields are kept: pictures cost more than solving, and exact methods agree to many digits.
@@ -81,7 +81,7 @@ pub fn run_case(
         curves: true,
         starts: settings.starts.saturating_sub(1),
         why: settings.why != Why::Nothing,
-        cure: settings.why == Why::Cure,
+        remedy: settings.why == Why::Remedy,
         ..Looks::default()
     };
     let mut tasks =

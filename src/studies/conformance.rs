@@ -20,7 +20,7 @@ const TWICE: Repeats = Repeats {
     patience_s: f64::INFINITY,
 };
 
-/// What became of an exercise.
+/// Result of an exercise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
     /// As known.
@@ -90,7 +90,7 @@ pub fn distance(record: &Record) -> f64 {
     own.next().unwrap_or(f64::NAN)
 }
 
-/// What a record of an exercise is worth.
+/// Worth of a record of an exercise.
 pub fn mark(record: &Record) -> Mark {
     let known = record.class != WITHOUT_ANSWER;
     let right = match &record.found.verdict {

@@ -29,7 +29,7 @@ use crate::studies::tips::{Regularity, regularity};
 /// Refinement factors where neither the study nor the case names several.
 const REFINE: [usize; 4] = [1, 2, 4, 8];
 
-/// What to run. `None`: what the case says, see [`ConvergencePlan::meshes`], [`ConvergencePlan::spaces`], [`ConvergencePlan::tips`].
+/// The runs of a study. `None`: what the case says, see [`ConvergencePlan::meshes`], [`ConvergencePlan::spaces`], [`ConvergencePlan::tips`].
 #[derive(Debug, Clone)]
 pub struct ConvergencePlan {
     /// Refinement factors, increasing.

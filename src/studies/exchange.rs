@@ -19,7 +19,7 @@ use stickslip_methods::{
 use crate::files::interchange::{GlobalProblem, Info, LocalProblem, Solution, SparseMatrix};
 use crate::run::local_problem::{local_velocity, unsolved};
 
-/// What a file gives a method.
+/// The problem that a file gives a method.
 pub struct System {
     /// The body.
     pub elastic: Arc<Elastic>,
@@ -92,7 +92,7 @@ pub const ROUNDING: f64 = 1e-12;
 /// V and s become rigid motions and a load f on the contact points with Vᵀ f = s, whose free jump W f is taken off q.
 ///
 /// # Errors
-/// What [`Elastic::from_delassus`] refuses; R ≠ 0 is the caller's to refuse.
+/// Refusals of [`Elastic::from_delassus`]; R ≠ 0 is the caller's to refuse.
 pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     let rows = problem.q.len();
     let square = problem.w.as_square()?;
@@ -140,7 +140,7 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
 /// to [`ROUNDING`] is no stiffness: it is condensed, and the body known at its contact points only.
 ///
 /// # Errors
-/// What [`Elastic::new`] and [`local_system`] refuse, a singular M; equality constraints are the caller's to refuse.
+/// Refusals of [`Elastic::new`] and [`local_system`], a singular M; equality constraints are the caller's to refuse.
 pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
     if problem.m.as_square()?.asymmetry() > ROUNDING {
         return local_system(&condensed(problem)?);

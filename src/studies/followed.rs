@@ -30,7 +30,7 @@ pub struct Value {
     pub at: String,
     /// Value, SI.
     pub value: f64,
-    /// What errors are relative to: the length of the vector that the value is a component of, |value| of others.
+    /// Reference of errors: the length of the vector that the value is a component of, |value| of others.
     pub norm: f64,
     /// Largest number of the same kind in the body; beside it the value may be rounding.
     pub scale: f64,

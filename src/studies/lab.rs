@@ -17,10 +17,10 @@ use crate::studies::records::{Records, RecordsError};
 use crate::studies::task::{Asked, Matter, Task, share_traction};
 use crate::studies::worker::{Worker, WorkerError, share};
 
-/// What makes the program a worker that measures tasks.
+/// The argument that makes the program a worker that measures tasks.
 const WORK: &[&str] = &["work"];
 
-/// What a worker is asked for.
+/// Request to a worker.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Request {
     /// Tasks that differ in the method alone.
@@ -33,7 +33,7 @@ pub struct Request {
     pub seconds: f64,
 }
 
-/// What a worker answers.
+/// Answer of a worker.
 #[derive(Debug, Serialize, Deserialize)]
 pub enum Reply {
     /// A task, measured.

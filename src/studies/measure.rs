@@ -37,9 +37,10 @@ pub fn measure(scene: &Scene<'_>, task: &Task, choice: &Choice) -> Result<Answer
         posed: scene.posed(),
         choice,
         accuracy: task.asked.accuracy(),
-        guess: match task.asked.cold {
-            true => Guess::Cold,
-            false => Guess::Before,
+        guess: if task.asked.cold {
+            Guess::Cold
+        } else {
+            Guess::Before
         },
     };
     let verdict = Verdict::Crashed("a load path without increments".into());

@@ -36,7 +36,7 @@ use crate::studies::axes::named;
 use crate::studies::measure::Repeats;
 use crate::studies::sources::Problem;
 use crate::studies::task::{Looks, Task};
-use block::{Room, block};
+use block::{Quota, block};
 
 /// A sweep: its tasks, sorted by id.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub struct Plan {
     pub title: String,
     /// How often tasks are repeated for their times.
     pub repeats: Repeats,
-    /// What it was read from: texts by file name.
+    /// Sources: texts by file name.
     pub input: Vec<(String, String)>,
     /// The tasks.
     pub tasks: Vec<Task>,
@@ -83,9 +83,9 @@ impl Plan {
             if blocks.is_empty() {
                 return Err(root.missing("`[[cells]]`"));
             }
-            let (mut room, mut tasks) = (Room::default(), Vec::new());
+            let (mut quota, mut tasks) = (Quota::default(), Vec::new());
             for value in blocks {
-                tasks.extend(block(value, folder, &mut room)?);
+                tasks.extend(block(value, folder, &mut quota)?);
             }
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             let input = vec![(name.into_owned(), text.to_owned())];

@@ -1,6 +1,6 @@
-//! What is recorded of a task: what was asked, what was found, what was spent.
+//! The record of a task: what was asked, what was found, what was spent.
 //!
-//! What was found is a function of the task and the program alone; what was spent belongs to the machine and the moment.
+//! The findings are a function of the task and the program alone; the costs belong to the machine and the moment.
 //! The two are kept apart, so that a rerun can be compared bit by bit. Numbers that do not exist are NaN, in a file `null`.
 
 use serde::{Deserialize, Serialize};
@@ -27,19 +27,19 @@ use crate::studies::why::stopping::Stop;
 pub struct Record {
     /// [`Asked::id`].
     pub id: String,
-    /// What was asked.
+    /// The task.
     pub asked: Asked,
     /// Its group, for statistics; empty: none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub class: String,
-    /// What else was looked at.
+    /// Further looks.
     pub looks: Looks,
     /// By which program on which machine.
     pub origin: Origin,
     /// Limits that ended it, where the verdict is `timed-out` or `out-of-memory`: it says something about them alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
-    /// What came out; the same on every run of the same program, but for limits.
+    /// The result; the same on every run of the same program, but for limits.
     pub found: Found,
     /// Times and memory.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,12 +47,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// What this program found and spent on this machine, under no limits.
+    /// Findings and costs of this program on this machine, under no limits.
     pub fn here(task: &Task, found: Found, spent: Option<Spent>) -> Self {
         Self::by(&Origin::here(), task, found, spent)
     }
 
-    /// What a program found and spent on a machine, under no limits.
+    /// Findings and costs of a program on a machine, under no limits.
     pub fn by(origin: &Origin, task: &Task, found: Found, spent: Option<Spent>) -> Self {
         Self {
             id: task.id(),
@@ -89,7 +89,7 @@ impl Record {
     }
 }
 
-/// What came out.
+/// The result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// Claim × check over the whole load path: that of the last increment, which is the first that is not honest.
@@ -98,7 +98,7 @@ pub struct Found {
     pub method: String,
     /// Whether the limit of the method are the contact laws.
     pub exact: bool,
-    /// What was solved; absent where it ended before that was known.
+    /// The discrete problem; absent where it ended before that was known.
     pub problem: Option<ProblemSize>,
     /// Increment by increment.
     pub increments: Vec<Step>,
@@ -117,10 +117,10 @@ pub struct Found {
     /// Where published stopping tests would have ended it, where that was asked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stops: Vec<Stop>,
-    /// What the independent check of the answer says, where that was asked.
+    /// Result of the independent check of the answer, where that was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check: Option<Check>,
-    /// What the view changed.
+    /// Change by the view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<Change>,
 }
@@ -170,7 +170,7 @@ pub struct Step {
     pub global_factorisations: usize,
     /// Evaluations of the contact law at one point.
     pub local_solves: usize,
-    /// What the judge found.
+    /// Findings of the judge.
     #[serde(flatten)]
     pub judge: Judge,
     /// Deepest overlap of the faces anywhere, sampled much closer than the contact points [m].
@@ -187,7 +187,7 @@ pub struct Step {
     pub quantities: Vec<Quantity>,
 }
 
-/// What the judge found of an increment; NaN where there was nothing to judge. See [`Residuals`].
+/// Findings of the judge on an increment; NaN where there was nothing to judge. See [`Residuals`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "as in `Residuals`")]
 pub struct Judge {
@@ -307,7 +307,7 @@ pub struct Spent {
     pub prepare: Timing,
     /// All increments of the path.
     pub solve: Timing,
-    /// Of these, without load solves, recovery of displacements and checks of equilibrium.
+    /// Its part without load solves, recovery of displacements and checks of equilibrium.
     pub enforcement: Timing,
     /// Enforcement by the account of a program from outside, where it gives one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -337,7 +337,7 @@ pub struct Times {
 }
 
 impl Spent {
-    /// What one pass took, given what its last increment shared and what every increment took; none where a method never
+    /// Times of one pass, given what its last increment shared and what every increment took; none where a method never
     /// started. `setup_s`, `assembly_s`: those of the body.
     pub fn of([setup_s, assembly_s]: [f64; 2], work: &[Work]) -> Option<Self> {
         let last = work.last()?;

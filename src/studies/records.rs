@@ -67,7 +67,7 @@ impl Records {
                     });
                 }
             };
-            // What is cut off, or of another format, is measured again.
+            // A record that is cut off, or of another format, is measured again.
             let whole = text
                 .split_inclusive('\n')
                 .filter(|line| line.ends_with('\n'));

@@ -7,7 +7,7 @@ use crate::studies::rows::{
     recorded_iterations,
 };
 
-/// What runs found, and what they are held to.
+/// Findings of runs, and the numbers they are held to.
 #[derive(Debug, Clone, Default)]
 pub struct Results {
     /// The runs.
@@ -44,7 +44,7 @@ impl Results {
         self.answers.iter().map(|own| &own.record)
     }
 
-    /// What every increment found.
+    /// Findings of every increment.
     pub fn increments(&self) -> Vec<IncrementRow<'_>> {
         self.records().flat_map(IncrementRow::of).collect()
     }

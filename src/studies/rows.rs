@@ -8,7 +8,7 @@ use crate::model::field_mesh::FieldStep;
 use crate::model::quantities::{PointState, Quantity};
 use crate::studies::record::{Record, Step};
 
-/// What identifies a run; first columns of every table.
+/// Identity of a run; first columns of every table.
 #[derive(Debug, Clone, PartialEq, PartialOrd, Serialize)]
 pub struct RunKey {
     /// Case name.
@@ -39,7 +39,7 @@ impl RunKey {
         }
     }
 
-    /// What all methods solve: everything but the method.
+    /// The problem that all methods solve: everything but the method.
     pub fn problem(&self) -> String {
         let RunKey {
             case,
@@ -79,7 +79,7 @@ pub struct IncrementRow<'a> {
     pub key: RunKey,
     /// The run.
     pub record: &'a Record,
-    /// What was found.
+    /// The findings.
     pub step: &'a Step,
 }
 
@@ -100,7 +100,7 @@ impl<'a> IncrementRow<'a> {
 pub struct QuantityRow<'a> {
     /// Which run.
     pub key: RunKey,
-    /// What was found.
+    /// The findings.
     pub quantity: &'a Quantity,
 }
 
@@ -140,7 +140,7 @@ pub struct HistoryRow {
 pub struct PointRow<'a> {
     /// Which run.
     pub key: RunKey,
-    /// What was found.
+    /// The findings.
     pub point: &'a PointState,
 }
 
@@ -150,7 +150,7 @@ pub struct PointRow<'a> {
 pub struct ExactPoint {
     /// Case, friction coefficient and increment; mesh and space are empty.
     pub key: RunKey,
-    /// What the closed form has there.
+    /// State of the closed form there.
     pub point: PointState,
 }
 

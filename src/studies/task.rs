@@ -1,4 +1,4 @@
-//! What is asked: a problem, a method and an accuracy.
+//! The question: a problem, a method and an accuracy.
 //!
 //! A problem is a case on one mesh, with one contact space, tip enrichment, friction, number of increments and start; or that of an
 //! FCLIB file.
@@ -18,7 +18,7 @@ use crate::studies::stress::transform::Transform;
 /// Longest id: with the ending of a file that is being written it is the name of a file.
 const MAX_ID: usize = 200;
 
-/// What describes a problem.
+/// Description of a problem.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Matter {
     /// A case file.
@@ -37,7 +37,7 @@ pub enum Matter {
     Bytes(Vec<u8>),
 }
 
-/// What is asked. Everything that decides about what is found is in here, and nothing else.
+/// The question. Everything that decides about what is found is in here, and nothing else.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
     /// Name of the case, or of the problem of a file.
@@ -105,7 +105,7 @@ impl Asked {
         let path = self.path_name();
         let readable = format!("{case}.r{}.{space}.mu-{mu}{path}.{how}", self.refine);
         let mut exact = format!("{readable} {} {:?}", self.digest, self.friction);
-        // What is as the case says stands in no id, so that ids stay when something new can be asked.
+        // An axis that is as the case says stands in no id, so that ids stay when something new can be asked.
         if self.tip.is_some() || self.finer.is_some() || self.view.is_some() {
             exact += &format!(" {:?}", (&self.tip, self.finer, &self.view));
         }
@@ -122,7 +122,7 @@ impl Asked {
         format!("{name}.r{refine}.{}.jsonl", &sha256(exact.as_bytes())[..8])
     }
 
-    /// What methods are given alike: the same without method and accuracy.
+    /// The problem that methods are given alike: the same without method and accuracy.
     pub fn problem(&self) -> Problem {
         Self {
             method: String::new(),
@@ -169,7 +169,7 @@ impl Asked {
         name
     }
 
-    /// What tasks on one body have in common.
+    /// Common part of tasks on one body.
     pub fn body(&self) -> Body {
         Body {
             case: self.case.clone(),
@@ -190,7 +190,7 @@ impl Asked {
     }
 }
 
-/// What else is looked at on the way; it decides nothing about what is found.
+/// Further looks on the way; they decide nothing about what is found.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Looks {
@@ -208,8 +208,8 @@ pub struct Looks {
     pub output: bool,
     /// Why it gave up.
     pub why: bool,
-    /// What solves the problem instead.
-    pub cure: bool,
+    /// The remedy that solves the problem instead.
+    pub remedy: bool,
     /// Where published stopping tests would have ended it.
     pub stops: bool,
     /// The independent check of a first increment: uniform stress, or the energy.
@@ -229,24 +229,24 @@ impl Looks {
             && has(self.error, asked.error)
             && has(self.output, asked.output)
             && has(self.why, asked.why)
-            && has(self.cure, asked.cure)
+            && has(self.remedy, asked.remedy)
             && has(self.stops, asked.stops)
             && has(self.check, asked.check)
             && self.starts >= asked.starts
     }
 }
 
-/// What is to be measured.
+/// The task to be measured.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Task {
-    /// What is asked.
+    /// The question.
     pub asked: Asked,
     /// Its group, for statistics; empty: none.
     pub class: String,
     /// Where the problem is described.
     #[serde(skip, default = "nothing")]
     pub matter: Arc<Matter>,
-    /// What else is looked at.
+    /// Further looks.
     pub looks: Looks,
     /// Whether its body has the traction operator, because a task beside it on the same body needs it.
     pub traction: bool,
@@ -311,7 +311,7 @@ impl Named {
     }
 }
 
-/// What tasks on one body have in common, as in [`Asked`]; in the order in which they are measured.
+/// Common part of tasks on one body, as in [`Asked`]; in the order in which they are measured.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "as in `Asked`")]
 pub struct Body {
@@ -323,7 +323,7 @@ pub struct Body {
     pub view: Option<String>,
 }
 
-/// What several methods are given alike, as [`Asked::problem`] makes it. Methods are compared from the same start and in the same
+/// The problem that several methods are given alike, as [`Asked::problem`] makes it. Methods are compared from the same start and in the same
 /// increments, so other ones make it another problem.
 pub type Problem = Asked;
 

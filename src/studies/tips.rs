@@ -45,7 +45,7 @@ pub fn tip_named(text: &str) -> Option<Tip> {
     }
 }
 
-/// What limits the order: the worst enriched tip.
+/// Limit of the order: the worst enriched tip.
 pub fn regularity(case: &Case) -> Regularity {
     let mut inside = ending_inside(case).peekable();
     if inside.peek().is_none() {

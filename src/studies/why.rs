@@ -3,13 +3,13 @@
 //! A method that gives up says how it ended, not why. Its run is deterministic, so it is repeated under the eyes of a
 //! [`Watch`], which sees P and v of every iterate; the method knows nothing of it. Files: `watch` records,
 //! `active` measures W and the tangent on the points in contact, `enumerate` and `answers` say which solutions there are,
-//! `cause` decides, `cure` finds what solves it, `stopping` evaluates criteria that are no residual of the contact laws.
+//! `cause` decides, `remedy` finds what solves it, `stopping` evaluates criteria that are no residual of the contact laws.
 
 pub mod active;
 pub mod answers;
 pub mod cause;
-pub mod cure;
 pub mod enumerate;
+pub mod remedy;
 pub mod stopping;
 pub mod watch;
 
@@ -33,8 +33,8 @@ pub struct Explanation {
     pub diagnosis: Diagnosis,
     /// Solutions known of the problem.
     pub solutions: usize,
-    /// First of the [`cure`] list that solved it, as on the command line.
-    pub cure: Option<String>,
+    /// First of the [`remedy`] list that solved it, as on the command line.
+    pub remedy: Option<String>,
 }
 
 impl fmt::Display for Explanation {
@@ -45,14 +45,14 @@ impl fmt::Display for Explanation {
         if measure.is_finite() {
             write!(f, " ({measure:.1e})")?;
         }
-        match &self.cure {
-            Some(cure) => write!(f, "; {cure} solves it"),
+        match &self.remedy {
+            Some(remedy) => write!(f, "; {remedy} solves it"),
             None => write!(f, "; {}", cause.advice()),
         }
     }
 }
 
-/// Runs a failed method again with the watch on, and says why it failed. `answers` are those of the same increment; `cures`:
+/// Runs a failed method again with the watch on, and says why it failed. `answers` are those of the same increment; `remedies`:
 /// whether to look for one.
 ///
 /// # Errors
@@ -63,7 +63,7 @@ pub fn explain(
     increment: &Increment<'_>,
     verdict: &Verdict,
     answers: &Answers,
-    cures: bool,
+    remedies: bool,
 ) -> Result<Explanation, MethodError> {
     let gauge = Gauge::new(increment)?;
     let mut watch = Watch::new(&gauge);
@@ -80,15 +80,15 @@ pub fn explain(
         answers,
     };
     let diagnosis = Diagnosis::of(&evidence);
-    let cure = match diagnosis.cause {
+    let remedy = match diagnosis.cause {
         cause::Cause::NoSolution => None,
-        _ if !cures => None,
-        _ => cure::of(choice, increment),
+        _ if !remedies => None,
+        _ => remedy::of(choice, increment),
     };
     Ok(Explanation {
         diagnosis,
         solutions: answers.solutions,
-        cure,
+        remedy,
     })
 }
 

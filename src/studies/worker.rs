@@ -24,7 +24,7 @@ use crate::run::verdict::Verdict;
 #[derive(Debug, thiserror::Error)]
 #[error("{what}: {why}; nothing is kept of it, the same command goes on from here")]
 pub struct WorkerError {
-    /// What happened to a process that measures.
+    /// End of a process that measures.
     pub what: String,
     /// Why.
     pub why: String,
@@ -36,12 +36,13 @@ impl WorkerError {
     /// # Errors
     /// That error.
     pub fn if_denied(what: &str, denied: bool, limits: Limits) -> Result<(), Self> {
-        match denied && memory::is_short(limits.memory_mb) {
-            true => Err(Self {
+        if denied && memory::is_short(limits.memory_mb) {
+            Err(Self {
                 what: what.into(),
                 why: "denied memory by a limit of the shell (ulimit -v or -d), not by one that was asked for".into(),
-            }),
-            false => Ok(()),
+            })
+        } else {
+            Ok(())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What only the discretisation can find wrong: refused with file, line and column, exit code 2, and nothing written.
+//! Faults that only the discretisation can find: refused with file, line and column, exit code 2, and nothing written.
 
 use crate::common::*;
 use stickslip::model::body::BodyError;

@@ -1,4 +1,4 @@
-//! What the whole-chain tests share: cases from text, one increment by hand, rows by name.
+//! Common tools of the whole-chain tests: cases from text, one increment by hand, rows by name.
 
 // Every test program uses its own part.
 #![allow(dead_code)]
@@ -119,7 +119,7 @@ pub fn friction(case: &Case, body: &Body) -> Vec<f64> {
     points.map(|p| case.cracks[p.crack].friction).collect()
 }
 
-/// What acts on a body, with the friction of its first crack.
+/// Loads on a body, with the friction of its first crack.
 pub fn loading<'a>(body: &'a Body, case: &'a Case) -> Loading<'a> {
     let friction = case.cracks.first().map_or(0.0, |crack| crack.friction);
     Loading::new(body, case, friction).unwrap_or_else(|e| panic!("{e}\n{}", case.source))
@@ -240,7 +240,7 @@ impl Random {
     }
 }
 
-/// What the files of the tests of one chain have in common: a 2D box and everything after it.
+/// Common part of the files of the tests of one chain: a 2D box and everything after it.
 pub fn plane(min: [f64; 2], max: [f64; 2], cells: [usize; 2], rest: &str) -> String {
     format!(
         "title = \"t\"\nmodel = \"plane-strain\"\nmaterial = {{ young_pa = 1, poisson = 0.3 }}\n\

@@ -43,13 +43,15 @@ impl Scene {
             let points: Vec<[f64; 2]> = points.iter().map(|x| place(*x)).collect();
             format!("[[crack]]\npoints_m = {points:?}\nfriction = {friction:?}\n")
         });
-        let cells = match turned {
-            true => [self.cells[1], self.cells[0]],
-            false => self.cells,
+        let cells = if turned {
+            [self.cells[1], self.cells[0]]
+        } else {
+            self.cells
         };
-        let [below, above] = match turned {
-            true => ["\"right\"", "\"left\""],
-            false => ["\"bottom\"", "\"top\""],
+        let [below, above] = if turned {
+            ["\"right\"", "\"left\""]
+        } else {
+            ["\"bottom\"", "\"top\""]
         };
         let rest = cracks.collect::<String>()
             + &support(below, "[0, 0]")

@@ -94,8 +94,7 @@ fn slip_that_turns_takes_what_it_does_in_many_increments() {
 }
 
 /// Goal: what acts at time 0 is there before the first increment, with its slip and without work; loads that stay do none later;
-/// where nothing acts at time 0 a path has no increment 0.
-/// Tolerance 1e-9 of the stored energy: that of the contact laws.
+/// where nothing acts at time 0 a path has no increment 0. Tolerance 1e-9 of the stored energy: that of the contact laws.
 #[test]
 fn the_state_at_time_0_comes_first_and_its_work_is_not_counted() {
     let text = pushed(2).source.replace(

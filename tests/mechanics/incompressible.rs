@@ -202,9 +202,12 @@ fn internal_force(body: &Body, u: &[f64]) -> Vec<f64> {
 fn every_stress_is_exact_in_uniform_strain() {
     let mut random = Random(23);
     let incompressible = |text: &str| of_ratio(text, 0.4999);
-    let distorted = |text: &str| match text.contains("solid") {
-        true => of_ratio(text, 0.4999),
-        false => moved(&of_ratio(text, 0.4999)),
+    let distorted = |text: &str| {
+        if text.contains("solid") {
+            of_ratio(text, 0.4999)
+        } else {
+            moved(&of_ratio(text, 0.4999))
+        }
     };
     let all = bodies_like(Needs::default(), incompressible).into_iter();
     let sliver = plane(

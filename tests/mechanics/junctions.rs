@@ -47,8 +47,7 @@ fn bodies() -> Vec<(&'static str, Body, usize)> {
 }
 
 /// Source: conformity. Goal: whatever the unknowns, the displacement on an edge is the same from both cells, region by
-/// region: cracks cut cells, nothing else does.
-/// Tolerance: rounding.
+/// region: cracks cut cells, nothing else does. Tolerance: rounding.
 #[test]
 fn displacements_are_continuous_across_cell_edges() {
     let mut random = Random(41);

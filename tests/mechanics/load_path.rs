@@ -129,8 +129,7 @@ fn an_increment_restarted_from_its_stored_state_gives_the_same_bits() {
 }
 
 /// Source: numerics, monotone loading of the confined block: slip never turns back. Goal: one increment gives what 2, 5
-/// and 16 equal ones give.
-/// Tolerance 1e-10: each increment ends within 1e-13 of equilibrium.
+/// and 16 equal ones give. Tolerance 1e-10: each increment ends within 1e-13 of equilibrium.
 #[test]
 fn monotone_loading_does_not_depend_on_the_number_of_increments() {
     let mut case = shipped::find("sliding_block_embedded").unwrap().unwrap();

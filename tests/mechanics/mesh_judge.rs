@@ -38,7 +38,7 @@ const FAULT: f64 = 1e3 * UNIFORM;
 /// A change of a sound body.
 type Plant = fn(&mut Body);
 
-/// What the judge finds after a change of a sound body.
+/// Findings of the judge after a change of a sound body.
 fn after(change: impl FnOnce(&mut Body)) -> (f64, Option<String>) {
     let mut body = body(CROSSED);
     assert_below(mesh_checks(&body).uniform, 1e-12, "sound");

@@ -218,8 +218,7 @@ fn upper_piece(body: &Body) -> usize {
 }
 
 /// Source: virtual work. Goal: P·[[u]] = (Bᵀ P)·u for the operator the methods get and for the one over all unknowns;
-/// contact forces on both sides together have no resultant and no moment, and on side 1 alone they are ΣP.
-/// Tolerance: rounding.
+/// contact forces on both sides together have no resultant and no moment, and on side 1 alone they are ΣP. Tolerance: rounding.
 #[test]
 fn contact_forces_do_the_work_of_the_jump_and_balance_themselves() {
     let mut random = Random(17);

@@ -101,8 +101,7 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
 
 /// Source: rounding; a plane patch test whose tip lay 1e-13 m before an edge of cells of 1 : 4 was wrong by 12 %. Goal: a tip
 /// closer to an edge than 1e-9 of it, before or behind, lies on it, in cells of any shape: the same unknowns, points and
-/// reactions.
-/// Tolerance 1e-7: what 1e-9 of a cell moves the end of a crack by, times a hundred.
+/// reactions. Tolerance 1e-7: what 1e-9 of a cell moves the end of a crack by, times a hundred.
 #[test]
 fn a_tip_within_rounding_of_an_edge_lies_on_it() {
     let [p, q] = [[-1.2, -0.3], [0.5, 0.37]];
@@ -132,8 +131,7 @@ fn a_tip_within_rounding_of_an_edge_lies_on_it() {
 
 /// Source: superposition of separate bodies. Goal: three cracks one above the other are numbered, placed and solved each
 /// on its own: points come in case order, equal cracks far apart carry equal forces, the order in the file does not
-/// matter to the answer.
-/// A plate 1 × 4 m, ν = 0, pushed and sheared uniformly along its height: all cracks see the same stress.
+/// matter to the answer. A plate 1 × 4 m, ν = 0, pushed and sheared uniformly along its height: all cracks see the same stress.
 #[test]
 fn parallel_cracks_share_the_load_and_their_order_does_not_matter() {
     let heights = [0.71, 2.05, 3.33];

@@ -1,4 +1,4 @@
-//! What is written: tables, figures, pages, and the committed report; and the order of the sources themselves.
+//! Everything written: tables, figures, pages, and the committed report; and the order of the sources themselves.
 
 mod committed_report;
 mod committed_study;

@@ -105,7 +105,7 @@ fn elements(html: &str) -> Vec<(String, Vec<(String, String)>)> {
     found
 }
 
-/// What holds of every page.
+/// Claims that hold of every page.
 fn check(html: &str) {
     let elements = elements(html);
     let mut ids = BTreeSet::new();

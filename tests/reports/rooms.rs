@@ -76,7 +76,7 @@ fn read_path(
     at + if is(at + 1, "as") { 3 } else { 1 }
 }
 
-/// What a module declares by `use`, by name: others reach it through the module.
+/// Names that a module declares by `use`: others reach them through the module.
 type Declared = BTreeMap<String, Vec<String>>;
 
 /// All paths of a module that may lead to modules of its own crate, and what it declares.
@@ -267,8 +267,8 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 13] = [
-    ("methods/src", 18_000), ("xfem/src", 22_330), ("src/files", 2075), ("src/case", 3200), ("src/model", 2875), ("src/run", 2200),
-    ("src/studies", 16_510), ("src/report", 10_315), ("src/cli", 1975), ("benches", 570), ("methods/tests", 3200), ("xfem/tests", 125),
+    ("methods/src", 18_000), ("xfem/src", 22_340), ("src/files", 2075), ("src/case", 3200), ("src/model", 2875), ("src/run", 2200),
+    ("src/studies", 16_515), ("src/report", 10_330), ("src/cli", 1975), ("benches", 570), ("methods/tests", 3200), ("xfem/tests", 125),
     ("tests", 17_810),
 ];
 
@@ -368,7 +368,7 @@ fn circles_are_found_unless_they_are_pairs_of_one_concept() {
     for ([a, x], [b, y], count) in pairs {
         assert_eq!(circle(&[(a, x), (b, y)]), count, "{a} {b}");
     }
-    // What a module passes on is the business of where it comes from.
+    // A name that a module passes on is the business of where it comes from.
     let passed = [
         ("a", "mod x;\nmod y;\npub use x::X;\npub use y::Y;"),
         ("a/x", "pub struct X;"),

@@ -80,12 +80,12 @@ fn of_a_task(verdict: &Verdict) -> Record {
             more: None,
         },
         solutions: 0,
-        cure: None,
+        remedy: None,
     });
     Record::here(&tasks[0], found, None)
 }
 
-/// What a file says in a column, read back as a reader would; the form for reading says the same.
+/// Value of a file in a column, read back as a reader would; the form for reading says the same.
 fn read_back<R: Row>(row: R, column: &str) -> Verdict {
     let rows = [row];
     let bytes = table::csv(&rows).unwrap();

@@ -75,9 +75,10 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
                 ("socp", stated) if !stated.is_empty() => {
                     let relative: f64 = stated.parse().unwrap();
                     // Of a global file the table states the asymmetry of M.
-                    let by = match name.ends_with("global") {
-                        true => "refused: W is unsymmetric by ".to_owned(),
-                        false => format!("refused: W is unsymmetric by {relative:.1e} relative, "),
+                    let by = if name.ends_with("global") {
+                        "refused: W is unsymmetric by ".to_owned()
+                    } else {
+                        format!("refused: W is unsymmetric by {relative:.1e} relative, ")
                     };
                     let needs = verdict.ends_with(" relative, the method needs a symmetric W");
                     assert!(verdict.starts_with(&by) && needs, "{name}: {verdict}");
@@ -90,7 +91,7 @@ fn a_collection_is_solved_or_refused_with_the_reason() {
             }
         }
     }
-    // What libfclib has copied is the same problem.
+    // A copy by libfclib is the same problem.
     let solution = |name: &str| {
         let file = format!("results/solutions/rotating.{name}.local.fclib.newton-ac.mu-");
         let path = dir.path().join(file);

@@ -65,7 +65,7 @@ fn assert_clear(message: &str, begins: &str, lines: usize) {
     assert!(!message.contains(hidden), "commands: {message:?}");
 }
 
-/// What a reader gives, in time: the usual inputs take milliseconds, on a busy machine with unoptimised code seconds.
+/// Answer of a reader, in time: the usual inputs take milliseconds, on a busy machine with unoptimised code seconds.
 fn quick<T>(read: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let found = read();
@@ -164,7 +164,7 @@ proptest! {
 proptest! {
     #![proptest_config(inputs(1500))]
 
-    /// What is taken is a problem that can be written and read again.
+    /// A problem that is taken can be written and read again.
     #[test]
     fn any_bytes_are_a_problem_or_refused_by_name(
         bytes in any_binary(files(&["tests/data/fclib"], "hdf5"))

@@ -1,4 +1,4 @@
-//! What ends a study or a task of it: limits are verdicts, what others end is an error, an interruption leaves whole records.
+//! Ends of a study or a task of it: limits are verdicts, what others end is an error, an interruption leaves whole records.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,7 @@ fn plate(methods: &str) -> (tempfile::TempDir, Plan) {
     ))
 }
 
-/// What a study complains of that ends with 2.
+/// Complaint of a study that ends with 2.
 #[track_caller]
 fn refused(mut command: Command) -> String {
     let output = command.stderr(Stdio::piped()).output().unwrap();

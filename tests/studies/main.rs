@@ -3,7 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-mod atlas;
+mod causes;
 mod collections;
 mod converge;
 mod estimate;

@@ -62,7 +62,7 @@ pub fn records(out: &Path, tasks: &[Task]) -> BTreeMap<String, Record> {
     Records::of(out).read(tasks).unwrap()
 }
 
-/// What was found, by id.
+/// Findings by id.
 type Bits = BTreeMap<String, String>;
 
 fn bits<'a>(records: impl IntoIterator<Item = &'a Record>) -> Bits {

@@ -133,7 +133,7 @@ fn planted_faults_are_found_with_their_causes() {
     assert!(10 * missed.len() <= FAULTS.len(), "not found: {missed:?}");
 }
 
-/// What a build of the program takes.
+/// Parts that a build of the program takes.
 #[rustfmt::skip]
 const PARTS: [&str; 9] = ["Cargo.toml", "Cargo.lock", "build.rs", "src", "methods", "xfem", "cases", "benches", "docs"];
 

@@ -19,8 +19,7 @@ use stickslip::studies::sources::random::{Kind, Specimen, Stream, problems};
 const SETTINGS: Settings = Settings::PLAIN;
 
 /// Increments of 100 that every exact method must solve, what is missing gave up and said so. Measured on these bodies:
-/// in 2D 299 of 300 by the augmented Lagrangian method and all by the others, in 3D 79 of 80 by LATIN and all by the
-/// others.
+/// in 2D 299 of 300 by the augmented Lagrangian method and all by the others, in 3D 79 of 80 by LATIN and all by the others.
 const FLOOR: usize = 97;
 
 /// Methods whose limit are the contact laws.
@@ -41,7 +40,7 @@ fn random_case(kind: &Kind, stream: &mut Stream) -> String {
     Specimen::draw(kind, 2, stream).case(&[0, 1], &[friction])
 }
 
-/// What an exact method found.
+/// Answer of an exact method.
 #[derive(Debug)]
 struct Answer {
     method: &'static str,

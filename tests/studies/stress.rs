@@ -13,7 +13,7 @@ use stickslip::studies::stress::{Family, Scene, places, scene, summary};
 /// Seed of the scenes here; those of reports are others.
 const SEED: u64 = 20_261_122;
 
-/// What becomes of scenes in this process.
+/// Course of scenes in this process.
 fn found(scenes: &[Scene], effort: Effort) -> Vec<Finding> {
     let halves = scenes.chunks(scenes.len().div_ceil(2).max(1));
     // Threads of their own: a worker of rayon that waits would begin another scene in the middle of one.
@@ -92,16 +92,16 @@ fn scenes_are_reproducible_and_take_turns() {
     }
 }
 
-/// Goal: what a plain crack does in uniform stress depends neither on what it lies beside, nor on units and place: every rung
+/// Goal: what a plain crack does in uniform stress depends neither on what it lies beside, nor on units and place: every step
 /// of these ladders is right, but for three cracks that nearly meet, of which the judge of the mesh says so, and what is
 /// refused with a place.
 #[test]
-fn ladders_of_plain_cracks_are_right_at_every_rung() {
+fn ladders_of_plain_cracks_are_right_at_every_step() {
     let scenes = (0..places::count()).map(|number| scene(Family::Ladder, 0, number));
     let plane: Vec<Scene> = scenes.filter(|scene| scene.dim == 2).collect();
     let mut others = Vec::new();
     for finding in found(&plane, Effort::Default) {
-        let value = places::rung(finding.scene.number).1;
+        let value = places::step(finding.scene.number).1;
         let allowed = match finding.scene.category.as_str() {
             "three cracks beside a point" => Some(Fault::SuspectMesh),
             "mesh twisted" if value.abs() > 110.0 => Some(Fault::Refused),

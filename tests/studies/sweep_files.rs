@@ -1,4 +1,4 @@
-//! What a sweep file may say: its axes, and where a bad one is refused.
+//! Rules of a sweep file: its axes, and where a bad one is refused.
 
 use std::fs;
 

@@ -31,7 +31,7 @@ use crate::stiffness::orthonormal::SolverBasis;
 
 use self::mesh_checks::{MeshChecks, mesh_checks, swaying};
 
-/// What a body is discretised from.
+/// Sources of a discretised body.
 pub struct Plan<'a> {
     /// Grid of the mesh.
     pub grid: &'a GridSpec,
@@ -92,7 +92,7 @@ pub struct Discretisation {
     pub jump_rows: Vec<Vec<(usize, f64)>>,
     /// Ends of cracks that were joined with what they nearly touch.
     pub joined: Vec<Joined>,
-    /// What the tests on the mesh found.
+    /// Findings of the tests on the mesh.
     pub checks: MeshChecks,
 }
 
@@ -221,7 +221,7 @@ impl Discretisation {
         self.checks = mesh_checks(self);
     }
 
-    /// What is wrong with the mesh, if anything is; inexact quadrature is asked for, and marked. `sway`: how many times as far
+    /// Fault of the mesh, if there is one; inexact quadrature is asked for, and marked. `sway`: how many times as far
     /// slender parts move as stiff cells deform.
     pub fn suspect(&self, sway: f64) -> Option<String> {
         match self.quadrature {
@@ -388,7 +388,7 @@ fn solver_stiffness(
     })
 }
 
-/// What a body that can move lacks: contact points on a crack that its motions open, or supports.
+/// Lack of a body that can move: contact points on a crack that its motions open, or supports.
 fn loose(
     integrator: &CellIntegrator<'_>,
     surface: &CrackSurface,

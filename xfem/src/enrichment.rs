@@ -102,9 +102,10 @@ impl Enrichment {
         let present: BTreeSet<usize> = faces.map(|f| cracks[f.crack].number).collect();
         for crack in cracks {
             if !present.contains(&crack.number) {
-                return Err(match enters(mesh, lengths, crack) {
-                    true => EnrichmentError::TooShort(crack.number),
-                    false => EnrichmentError::Outside(crack.number),
+                return Err(if enters(mesh, lengths, crack) {
+                    EnrichmentError::TooShort(crack.number)
+                } else {
+                    EnrichmentError::Outside(crack.number)
                 });
             }
         }
@@ -213,11 +214,12 @@ impl Enrichment {
                                     .map(|s| s.1)
                             };
                             let cut_off = &self.zones[tip as usize].cut_off;
-                            let step = |(region, part): (usize, &Option<&Part>)| match cut_off
-                                .contains(&(cell, region))
-                            {
-                                true => ABSENT,
-                                false => side(part).unwrap_or_else(elsewhere),
+                            let step = |(region, part): (usize, &Option<&Part>)| {
+                                if cut_off.contains(&(cell, region)) {
+                                    ABSENT
+                                } else {
+                                    side(part).unwrap_or_else(elsewhere)
+                                }
                             };
                             // Absent everywhere, too: what the solver makes of it holds functions that are not.
                             parts.iter().enumerate().map(step).collect()

@@ -50,7 +50,7 @@ impl Dilatation {
     /// at ν = 0.3, 0.9 % at 0.4, 1.9 % at 0.45, 9 % at 0.49.
     pub const MEAN_ABOVE: f64 = 0.4;
 
-    /// What a material asks for. Plane stress is free to change its thickness and never locks.
+    /// Demand of a material. Plane stress is free to change its thickness and never locks.
     pub fn of(material: Material, model: Model) -> Self {
         if model != Model::PlaneStress && material.poisson > Self::MEAN_ABOVE {
             Dilatation::Mean

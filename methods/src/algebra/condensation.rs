@@ -38,9 +38,10 @@ pub(crate) fn condense(
 ) -> Result<Condensed, MethodError> {
     check_rows(rows.len())?;
     let half = Half::new(factor, jump, rows);
-    let (mut w, squares) = match factor.contact_last() {
-        true => half.square(),
-        false => factor.condense(&half.entries, true),
+    let (mut w, squares) = if factor.contact_last() {
+        half.square()
+    } else {
+        factor.condense(&half.entries, true)
     };
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
     mirror_upper(&mut w);

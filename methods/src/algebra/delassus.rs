@@ -137,9 +137,10 @@ impl Dense {
             }
             col_ptr.push(values.len());
         }
-        match self.symmetric {
-            true => SquareMatrix::symmetric(m, col_ptr, row_idx, values),
-            false => SquareMatrix::general(m, col_ptr, row_idx, values),
+        if self.symmetric {
+            SquareMatrix::symmetric(m, col_ptr, row_idx, values)
+        } else {
+            SquareMatrix::general(m, col_ptr, row_idx, values)
         }
     }
 }

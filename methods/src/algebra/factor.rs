@@ -1,8 +1,7 @@
 //! Sparse Cholesky factor of the symmetrically scaled stiffness, D K D = L Lᵀ with D = diag(K)^(−1/2).
 //!
 //! The scaling keeps the condition number bounded however small a cut cell is. Rows and columns of pinned unknowns
-//! (one per rigid motion) are replaced by those of the unit matrix; what is solved for are balanced forces, see
-//! [`Balance`].
+//! (one per rigid motion) are replaced by those of the unit matrix; what is solved for are balanced forces, see [`Balance`].
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -47,7 +46,7 @@ impl Elimination {
     fn analysis(&self, k: &SquareMatrix, balance: &Balance) -> Analysis {
         /// Multiplications and additions below which the order does not matter: a tenth of a second.
         const WORTH: f64 = 2e9;
-        /// What is gained by the free order at least.
+        /// Least gain by the free order.
         const GAIN: f64 = 0.8;
         /// Part of the work that lies in the contact unknowns where another order may gain so much.
         const DENSE: f64 = 0.5;
@@ -67,9 +66,10 @@ impl Elimination {
         let free = Analysis::new(k, &self.free, &vec![false; k.size()]);
         let place = |row: &Vec<usize>| row.iter().map(|&j| free.ordering.inverse[j]).collect();
         let rows = self.rows.iter().map(place);
-        match free.tree.work() + free.tree.condensation(rows) < GAIN * work {
-            true => free,
-            false => last,
+        if free.tree.work() + free.tree.condensation(rows) < GAIN * work {
+            free
+        } else {
+            last
         }
     }
 }
@@ -306,13 +306,14 @@ mod tests {
             } else {
                 [x.clone(), part]
             };
-            match own.iter().any(|r| r.len() == 1) {
-                true => order.extend(
+            if own.iter().any(|r| r.len() == 1) {
+                order.extend(
                     own[1]
                         .clone()
                         .flat_map(|j| own[0].clone().map(move |i| i + n * j)),
-                ),
-                false => dissected(own, n, order),
+                )
+            } else {
+                dissected(own, n, order)
             }
         }
     }

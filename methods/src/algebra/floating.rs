@@ -40,10 +40,7 @@ pub(crate) fn pins(k: &SquareMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, M
     let pivot_of = |r: &[f64]| {
         let own = r.iter().enumerate();
         own.fold((0, -1.0), |best: (usize, f64), (j, v)| {
-            match v.abs() > best.1 {
-                true => (j, v.abs()),
-                false => best,
-            }
+            if v.abs() > best.1 { (j, v.abs()) } else { best }
         })
     };
     let mut work: Vec<(usize, Vec<f64>, (usize, f64))> = modes
@@ -101,8 +98,7 @@ pub(crate) struct Balance {
 }
 
 impl Balance {
-    /// From modes that span the kernel of K. A motion that moves no contact unknown is left to the pins: no force
-    /// balances it.
+    /// From modes that span the kernel of K. A motion that moves no contact unknown is left to the pins: no force balances it.
     pub fn new(k: &SquareMatrix, modes: &[Vec<f64>], in_contact: &[bool]) -> Self {
         let mut balance = Self {
             root: Vec::new(),
@@ -163,7 +159,7 @@ impl Balance {
         }
     }
 
-    /// What Pᵀ adds to D⁻¹ b, by contact unknown.
+    /// Term of Pᵀ beside D⁻¹ b, by contact unknown.
     pub fn completion(&self, b: &[(usize, f64)]) -> impl Iterator<Item = (usize, f64)> {
         self.motions.iter().flat_map(|Motion { r, s }| {
             let resultant: f64 = b.iter().map(|&(j, b)| r[j] * b).sum();

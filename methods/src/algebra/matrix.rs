@@ -96,9 +96,10 @@ impl SquareMatrix {
 
     /// Diagonal entry of column `j`.
     pub fn diagonal(&self, j: usize) -> f64 {
-        match self.symmetric {
-            true => self.values[self.col_ptr[j]],
-            false => self.stored(j, j),
+        if self.symmetric {
+            self.values[self.col_ptr[j]]
+        } else {
+            self.stored(j, j)
         }
     }
 
@@ -109,7 +110,7 @@ impl SquareMatrix {
         rows.zip(self.values[own].iter().copied())
     }
 
-    /// What is stored at (i, j); 0 where nothing is.
+    /// The entry stored at (i, j); 0 where there is none.
     fn stored(&self, i: usize, j: usize) -> f64 {
         let own = self.col_ptr[j]..self.col_ptr[j + 1];
         match self.row_idx[own.clone()].binary_search(&i) {

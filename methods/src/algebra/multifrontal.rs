@@ -70,7 +70,7 @@ impl Cholesky {
             if parent == NONE {
                 return Ok(());
             }
-            // What goes into the front above is freed at once, in the order of the children.
+            // The part that goes into the front above is freed at once, in the order of the children.
             *update_of(s) = Some(front.update);
             let above = &mut *begun(parent);
             while let Some(&child) = tree.children[parent].get(above.children) {

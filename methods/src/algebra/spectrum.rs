@@ -75,9 +75,10 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// Numerical rank of W; `None` if its singular values are not to be had.
 pub(crate) fn rank(w: &dyn Delassus) -> Option<usize> {
     let full = w.to_matrix();
-    let values = match w.symmetric() {
-        true => full.self_adjoint_eigenvalues(Side::Lower).ok()?,
-        false => full.singular_values().ok()?,
+    let values = if w.symmetric() {
+        full.self_adjoint_eigenvalues(Side::Lower).ok()?
+    } else {
+        full.singular_values().ok()?
     };
     let largest = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let counts = |x: &&f64| x.abs() > NEGLIGIBLE * largest;

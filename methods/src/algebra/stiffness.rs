@@ -1,4 +1,4 @@
-//! What stands behind the contact points of a body: how displacements follow from forces.
+//! The body behind the contact points: how displacements follow from forces.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 

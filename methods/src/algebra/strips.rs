@@ -37,7 +37,7 @@ impl Failure {
         }
     }
 
-    /// What two failures are told as, whichever came first: no memory, else the earlier column.
+    /// The one of two failures that is told, whichever came first: no memory, else the earlier column.
     pub fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::NotPositive(a), Self::NotPositive(b)) => Self::NotPositive(a.min(b)),

@@ -319,8 +319,7 @@ impl<'s> Rounds<'s> {
         (problem.counters.iterations + SHARE).min(self.runs.settings.max_iterations)
     }
 
-    /// Other methods from the start of the increment, before the first of the largest rounds; how the method ends, if it
-    /// does.
+    /// Other methods from the start of the increment, before the first of the largest rounds; how the method ends, if it does.
     fn others(
         &mut self,
         problem: &mut ContactProblem<'_>,

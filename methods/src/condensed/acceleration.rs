@@ -11,7 +11,7 @@ use crate::condensed::problem::ContactProblem;
 /// Growth of the violation after which an accelerated iterate is taken back.
 const GROWTH: f64 = 2.0;
 
-/// What the iteration has learnt, and what it falls back on.
+/// Knowledge of the iteration, and its fallback.
 pub(crate) struct Acceleration {
     depth: usize,
     anderson: Anderson,
@@ -22,7 +22,7 @@ pub(crate) struct Acceleration {
 }
 
 impl Acceleration {
-    /// What the option `anderson` does.
+    /// Effect of the option `anderson`.
     pub const HELP: &str = "differences that Anderson acceleration keeps, safeguarded by the natural map; 0: the plain method";
 
     /// Keeps `depth` differences, from `start`; `None` for 0.
@@ -41,7 +41,7 @@ impl Acceleration {
         self.plain = None;
     }
 
-    /// What the method goes on from, given the `image` of the iterate that was noted last.
+    /// The iterate from which the method goes on, given the `image` of the iterate that was noted last.
     pub fn next(&mut self, problem: &ContactProblem<'_>, image: Vec<f64>) -> Vec<f64> {
         let violation = problem.last_violation();
         if violation > GROWTH * self.before

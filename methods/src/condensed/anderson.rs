@@ -32,7 +32,7 @@ impl Image {
     }
 }
 
-/// What a fixed-point iteration has learnt, in memory that is asked for at its start.
+/// Memory of a fixed-point iteration, which is asked for at its start.
 pub(crate) struct Anderson {
     /// Differences kept; 0 leaves the iteration as it is.
     depth: usize,

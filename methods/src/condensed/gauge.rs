@@ -80,7 +80,7 @@ impl<'a> Gauge<'a> {
             .residuals(&self.operator, scale)
     }
 
-    /// What rounding of v = q + W P leaves of the violation at P: ε |(|q| + |W| |P|)| over u_ref, Euclidean norms.
+    /// Rounding of v = q + W P in the violation at P: ε |(|q| + |W| |P|)| over u_ref, Euclidean norms.
     pub fn floor(&self, p: &[f64]) -> f64 {
         let mut size: Vec<f64> = self.free.q.iter().map(|q| q.abs()).collect();
         self.operator.w.apply_abs_add(p, &mut size);

@@ -20,7 +20,7 @@ pub struct LocalForm {
     pub q: Vec<f64>,
     /// Orthonormal jumps V of the rigid motions, one vector each; empty unless the body floats.
     pub modes: Vec<Vec<f64>>,
-    /// What the contact forces must amount to on each rigid motion, in N (2D: N/m).
+    /// Amount of the contact forces on each rigid motion, in N (2D: N/m).
     pub balance: Vec<f64>,
     /// Rigid motions that move none of the rows: no contact force holds them.
     pub loose: usize,
@@ -119,8 +119,9 @@ fn spread(w: SquareMatrix, rows: &RowSet, all: usize) -> Result<SquareMatrix, Me
         }
         col_ptr.push(values.len());
     }
-    match w.is_symmetric() {
-        true => SquareMatrix::symmetric(all, col_ptr, row_idx, values),
-        false => SquareMatrix::general(all, col_ptr, row_idx, values),
+    if w.is_symmetric() {
+        SquareMatrix::symmetric(all, col_ptr, row_idx, values)
+    } else {
+        SquareMatrix::general(all, col_ptr, row_idx, values)
     }
 }

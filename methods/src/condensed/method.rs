@@ -1,4 +1,4 @@
-//! What methods on the condensed increment do alike: begin, iterate, finish.
+//! Common steps of methods on the condensed increment: begin, iterate, finish.
 
 use crate::condensed::forces::{End, Ended};
 use crate::condensed::problem::{Begin, ContactProblem};
@@ -14,12 +14,12 @@ pub trait CondensedMethod: Send {
         None
     }
 
-    /// What the method needs of the body.
+    /// Needs of the method.
     fn needs(&self) -> Needs {
         Needs::default()
     }
 
-    /// What [`Status::Converged`] stands for on a body of scale ρ.
+    /// Meaning of [`Status::Converged`] on a body of scale ρ.
     fn claim(&self, _rho: f64) -> Claim {
         Claim::Exact
     }

@@ -58,7 +58,7 @@ impl Limits {
     }
 }
 
-/// What becomes of an iterate that was checked.
+/// Fate of an iterate that was checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
     /// The method goes on from it.
@@ -97,14 +97,14 @@ pub struct ContactProblem<'a> {
     pub(crate) free: Vec<f64>,
     /// Forces on the body beside f + Bᵀ P: none, or Nitsche's consistency term.
     pub(crate) further: Vec<f64>,
-    /// What `Converged` stands for.
+    /// Meaning of `Converged`.
     pub(crate) claim: Claim,
     pub(crate) history: Vec<Iteration>,
     /// `[[u]]` at the start of the increment.
     pub(super) start_jump: Vec<f64>,
     /// s; see [`Residuals`](crate::Residuals).
     scale: f64,
-    /// What rounding of W P leaves of the violation measured last; 0 as long as that falls.
+    /// Rounding of W P in the violation measured last; 0 as long as that falls.
     floor: f64,
     rescues: usize,
     /// Smallest violation so far and its iteration.
@@ -212,7 +212,7 @@ impl<'a> ContactProblem<'a> {
         p
     }
 
-    /// What every increment starts from.
+    /// Start of every increment.
     pub fn start(&self) -> Forces {
         let p = self.start_forces();
         let beta = self.start_amplitudes(&p);
@@ -315,7 +315,7 @@ impl<'a> ContactProblem<'a> {
         self.rescues.saturating_sub(1)
     }
 
-    /// What a singular tangent means here.
+    /// Meaning of a singular tangent.
     pub fn singular(&self) -> Status {
         if self.modes() > 0 {
             Status::Mechanism
@@ -345,9 +345,10 @@ impl<'a> ContactProblem<'a> {
     pub fn violation(&mut self, p: &[f64], v: &[f64]) -> f64 {
         self.counters.local_solves += self.rows.points();
         let friction = self.increment.system.friction();
-        self.floor = match self.idle() >= AT_REST {
-            true => ratio(self.operator.rounding(p), self.reference_jump()),
-            false => 0.0,
+        self.floor = if self.idle() >= AT_REST {
+            ratio(self.operator.rounding(p), self.reference_jump())
+        } else {
+            0.0
         };
         Violations::of(friction, self.rows, &self.operator, self.scale, p, v).largest()
     }

@@ -91,9 +91,10 @@ impl ContactProblem<'_> {
     /// Backward error of equilibrium, as the judge measures it.
     fn imbalance(&self, state: &ContactState) -> Result<f64, MethodError> {
         let none = vec![0.0; state.u.len()];
-        let further = match self.further.is_empty() {
-            true => &none,
-            false => &self.further,
+        let further = if self.further.is_empty() {
+            &none
+        } else {
+            &self.further
         };
         let elastic = self.increment.system.elastic();
         elastic.on_body(|| imbalance(self.increment, state, further))

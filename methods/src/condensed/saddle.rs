@@ -203,9 +203,10 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
         q.iter().map(one).collect()
     };
     let wq = each(&|q, wq| w.apply_add(q, wq));
-    let qw = match w.symmetric() {
-        true => wq.clone(),
-        false => each(&|q, qw| w.apply_transpose_add(q, qw)),
+    let qw = if w.symmetric() {
+        wq.clone()
+    } else {
+        each(&|q, qw| w.apply_transpose_add(q, qw))
     };
     // Π W Π = W − Q (Qᵀ W) − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));

@@ -9,8 +9,7 @@ use crate::condensed::problem::ContactProblem;
 use crate::condensed::saddle::{Iterate, Saddle};
 use crate::contract::law::Branch;
 
-/// Proximal term on local problems, relative to 1/ρ: regularises points that do not move at all, and no fixed point
-/// notices.
+/// Proximal term on local problems, relative to 1/ρ: regularises points that do not move at all, and no fixed point notices.
 const PROXIMAL: f64 = 1e-10;
 
 /// Rows below which wide vectors do not pay.
@@ -55,12 +54,13 @@ impl Sweeps {
     ) -> usize {
         problem.counters.local_solves += self.local.len();
         let (problem, w) = (&*problem, saddle.w());
-        match w.rows() < SHORT {
-            true => self.points(problem, w, omega, x, branches),
-            false => wide(
+        if w.rows() < SHORT {
+            self.points(problem, w, omega, x, branches)
+        } else {
+            wide(
                 #[inline(always)]
                 || self.points(problem, w, omega, x, branches),
-            ),
+            )
         }
     }
 

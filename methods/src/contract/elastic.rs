@@ -15,13 +15,12 @@ use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
 use crate::contract::operator::ContactOperator;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
 
-/// What a discretisation hands over.
+/// Product of a discretisation.
 #[derive(Debug, Clone)]
 pub struct ElasticParts {
     /// Space dimension, 2 or 3.
     pub dim: usize,
-    /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating`. In N/m, in 2D
-    /// N/m².
+    /// Stiffness K with supports eliminated, n × n, semi-definite with kernel `floating`. In N/m, in 2D N/m².
     pub stiffness: SquareMatrix,
     /// Jump operator B, `dim` rows per contact point, n columns; dimensionless.
     pub jump: JumpOperator,
@@ -456,7 +455,7 @@ fn check_permutation(order: &[usize]) -> Result<(), MethodError> {
     Ok(())
 }
 
-/// What bodies of any kind must fulfil.
+/// Demands on bodies of any kind.
 fn check_contact(
     dim: usize,
     unknowns: usize,

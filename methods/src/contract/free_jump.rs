@@ -1,4 +1,4 @@
-//! What acts on the contact points without contact forces, and the scale that it sets for whatever breaks the contact laws.
+//! The load on the contact points without contact forces, and the scale that it sets for whatever breaks the contact laws.
 
 use crate::algebra::dense::{dot, norm};
 use crate::algebra::rows::RowSet;

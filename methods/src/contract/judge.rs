@@ -237,7 +237,7 @@ pub(crate) fn imbalance(i: &Increment<'_>, s: &ContactState, further: &[f64]) ->
     elastic.imbalance(&s.u, &[&i.load.force, &contact, further])
 }
 
-/// What of the contact laws a pair of forces and jumps breaks, each relative to its own scale; see [`Residuals`].
+/// Violations of the contact laws by a pair of forces and jumps, each relative to its own scale; see [`Residuals`].
 pub(crate) struct Violations {
     natural_map: f64,
     penetration: f64,
@@ -277,9 +277,10 @@ impl Violations {
             let power = |scale: f64| -> f64 {
                 p[1..].iter().zip(&v[1..]).map(|(p, d)| p / scale * d).sum()
             };
-            let unopposed = match bound > 1.0 {
-                true => d + power(bound),
-                false => bound * d + power(1.0),
+            let unopposed = if bound > 1.0 {
+                d + power(bound)
+            } else {
+                bound * d + power(1.0)
             };
             slip = larger(slip, unopposed.abs());
         }

@@ -123,9 +123,10 @@ pub fn return_map_derivative(mu: f64, z: &[f64], branch: Branch) -> [[f64; 3]; 3
 /// slip.
 pub fn natural_map_squared(mu: f64, rho: f64, p: &[f64], v: &[f64]) -> f64 {
     let plain = scaled_map_squared(mu, 1.0, rho, p, v);
-    match mu > 1.0 {
-        true => plain.min(scaled_map_squared(1.0, mu, rho, p, v)),
-        false => plain,
+    if mu > 1.0 {
+        plain.min(scaled_map_squared(1.0, mu, rho, p, v))
+    } else {
+        plain
     }
 }
 

@@ -13,7 +13,7 @@ pub struct Real {
     pub min: f64,
     /// Largest allowed value.
     pub max: f64,
-    /// What it does, in one sentence.
+    /// Its effect, in one sentence.
     pub help: &'static str,
 }
 
@@ -28,7 +28,7 @@ pub struct Whole {
     pub min: i64,
     /// Largest allowed value.
     pub max: i64,
-    /// What it does, in one sentence.
+    /// Its effect, in one sentence.
     pub help: &'static str,
 }
 
@@ -39,7 +39,7 @@ pub struct Switch {
     pub name: &'static str,
     /// Value if the user gives none.
     pub default: bool,
-    /// What it does, in one sentence.
+    /// Its effect, in one sentence.
     pub help: &'static str,
 }
 
@@ -138,7 +138,7 @@ impl OptionSpec {
         }
     }
 
-    /// What it does, in one sentence.
+    /// Its effect, in one sentence.
     pub fn help(&self) -> &'static str {
         match self {
             OptionSpec::Real(option) => option.help,
@@ -367,7 +367,7 @@ mod tests {
         assert_eq!((options.real(&R), options.count(&LIMIT)), (2.0, 50));
         assert!(options.switch(&POLISH) && !given("polish", 0.0).unwrap().switch(&POLISH));
         assert_eq!(options.get("x"), None);
-        // What a method reads without having declared it has its default, not a number that means nothing.
+        // An option that a method reads without having declared it has its default, not a number that means nothing.
         let none = Options::new(&[], &[]).unwrap();
         assert_eq!((none.real(&R), none.whole(&LIMIT)), (1.0, 50));
         let twice = [("r".to_string(), 2.0), ("r".to_string(), 3.0)];

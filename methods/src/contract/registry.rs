@@ -17,7 +17,7 @@ pub trait Enforcement: Send {
         self.needs().refuses(system)
     }
 
-    /// What the method needs of the body.
+    /// Needs of the method.
     fn needs(&self) -> Needs {
         Needs::default()
     }
@@ -42,7 +42,7 @@ pub trait Enforcement: Send {
         monitor: &mut dyn Monitor,
     ) -> Result<Outcome, MethodError>;
 
-    /// What the last [`solve`](Self::solve) took by the method's own account \[s\], where it runs outside this process and says
+    /// Time of the last [`solve`](Self::solve) by the method's own account \[s\], where it runs outside this process and says
     /// so.
     fn reported_s(&self) -> Option<f64> {
         None
@@ -60,7 +60,7 @@ pub enum OperatorKind {
     Any,
 }
 
-/// What a method needs of the body.
+/// Needs of a method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Needs {
     /// Which Delassus operators it can treat.
@@ -107,7 +107,7 @@ pub struct Method {
     pub label: &'static str,
     /// Where it was published.
     pub reference: &'static str,
-    /// What it does, in one sentence.
+    /// Its effect, in one sentence.
     pub summary: &'static str,
     /// Whether its limit is the solution of the contact laws; otherwise a parameter is a modelling error.
     pub exact: bool,
@@ -120,7 +120,7 @@ pub struct Method {
 }
 
 impl Method {
-    /// What there is to know about the method, in Markdown: equations, options, guarantees, failure modes, what it skips.
+    /// Manual of the method in Markdown: equations, options, guarantees, failure modes, what it skips.
     /// It is the documentation at the head of the method's file, so that there is one text.
     pub fn page(&self) -> String {
         let head = self.source.lines().map_while(|l| l.strip_prefix("//!"));

@@ -1,4 +1,4 @@
-//! What a method returns: a state, a status, a history and counters.
+//! Answer of a method: a state, a status, a history and counters.
 
 use crate::error::{MethodError, check_finite, check_positive};
 
@@ -157,7 +157,7 @@ pub struct Counters {
 pub struct Outcome {
     /// How the method ended.
     pub status: Status,
-    /// What `Converged` stands for.
+    /// Meaning of `Converged`.
     pub claim: Claim,
     /// Last state, whatever the status.
     pub state: ContactState,

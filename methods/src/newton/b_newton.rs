@@ -30,8 +30,7 @@
 //! # Guarantees
 //! Full steps are tried first; a non-monotone line search on the energy-scaled merit Σ H²/r steps in only after a rise
 //! above the last five merits. Locally quadratic at regular points; in 2D and without friction the last linear
-//! problem is the solution, so it ends after finitely many steps. No global guarantee: Coulomb friction is no
-//! minimisation.
+//! problem is the solution, so it ends after finitely many steps. No global guarantee: Coulomb friction is no minimisation.
 //!
 //! # Skips
 //! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.

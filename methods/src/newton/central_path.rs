@@ -39,7 +39,7 @@ pub(crate) struct Products {
 }
 
 impl Products {
-    /// What is lacking to ν; `second` are the products of a step, its error of second order.
+    /// Distance to ν; `second` are the products of a step, its error of second order.
     pub fn lack(&self, nu: f64, second: &Products) -> Self {
         Self {
             normal: nu - self.normal - second.normal,

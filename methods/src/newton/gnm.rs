@@ -35,8 +35,7 @@
 //! # Failure modes
 //! Where the states are far off, the product makes steps longer than `newton-ac` and `pdas` need, the more the larger μ.
 //! After 15 steps without progress local and global stages (as in LATIN) move the iterate on: medians of 19 and more are
-//! such rescues. On random problems (`stickslip study random`, 200 per entry, tier high) median steps and how many gave
-//! up:
+//! such rescues. On random problems (`stickslip study random`, 200 per entry, tier high) median steps and how many gave up:
 //!
 //! | μ                  | 0 | 0.1 | 0.3 | 0.6 | 1     | 2     | 5     |
 //! |--------------------|---|-----|-----|-----|-------|-------|-------|

@@ -218,7 +218,7 @@ struct PathEquations {
     a: Vec<[f64; 3]>,
     c: Vec<[f64; 3]>,
     scale: Vec<f64>,
-    /// What v lacks to the jump of P and β.
+    /// Difference of v from the jump of P and β.
     dv: Vec<f64>,
     /// By point, what the products lack to their targets.
     lack: Vec<Products>,

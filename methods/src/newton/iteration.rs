@@ -3,7 +3,7 @@
 //! H(P, v) = 0 at every point,  v = q + W P + Q β,  Qᵀ P = c
 //! V (δP, δv) = −H,  δv = W δP + Q δβ,  x <- x + t δ,   x = (P, β),  V an element of the generalised derivative of H
 //! ```
-//! What H and V are is the [`Scheme`]. Full steps are tried first; the non-monotone line search on the energy-scaled
+//! The [`Scheme`] defines H and V. Full steps are tried first; the non-monotone line search on the energy-scaled
 //! merit Σ H²/r steps in only after a rise above the last five merits. A singular V is regularised once by 1e-10/ρ on
 //! the diagonal of W: redundant points make W singular, and this picks one of the possible P.
 //!
@@ -67,7 +67,7 @@ struct State<P> {
     search: LineSearch,
     /// The merit of x where it was the last trial of a line search; then its jump is at hand, too.
     merit: Option<f64>,
-    /// What r grows by once slender parts sway.
+    /// Growth of r once slender parts sway.
     sharper: f64,
     work: Work,
 }

@@ -48,7 +48,7 @@ pub(crate) struct Rows<'a> {
     pub c: Blocks<'a>,
 }
 
-/// What unknown a change brings, with its row.
+/// The unknown that a change brings, with its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Unknown {
     /// y of a row of S₀.
@@ -120,7 +120,7 @@ impl Factored {
         }
     }
 
-    /// What has changed since: slacks of rows of S₀ that are others or no longer active, then new rows.
+    /// Changes since: slacks of rows of S₀ that are others or no longer active, then new rows.
     fn changes(&self, rows: Rows<'_>) -> Vec<Unknown> {
         let same = |k: usize| self.a[k] == rows.a[k] && self.c[k] == rows.c[k];
         let is_in = |list: &[usize], k: usize| list.binary_search(&k).is_ok();

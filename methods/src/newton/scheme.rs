@@ -1,4 +1,4 @@
-//! What tells the Newton methods apart: the equations of a point and the pieces of their derivative; and the step that these give.
+//! Differences of the Newton methods: the equations of a point and the pieces of their derivative; and the step that these give.
 
 #![allow(non_snake_case)]
 
@@ -53,7 +53,7 @@ pub(crate) trait Scheme: Send {
     }
 }
 
-/// What steps are computed in.
+/// The form in which steps are computed.
 #[derive(Default)]
 pub(crate) struct Work {
     /// Loose pieces are held by springs.

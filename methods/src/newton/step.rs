@@ -41,7 +41,7 @@ impl Default for Tangent {
 }
 
 impl Tangent {
-    /// What the option `monolithic` that chooses does.
+    /// Effect of the option `monolithic`.
     pub const HELP: &str = MONOLITHIC.help;
     /// The option.
     pub const OPTION: OptionSpec = OptionSpec::Switch(MONOLITHIC);
@@ -62,7 +62,7 @@ impl Tangent {
         blind.then(|| "the monolithic variant needs the stiffness of the body".to_string())
     }
 
-    /// What it needs of the body.
+    /// Its needs of the body.
     pub fn needs(&self) -> Needs {
         let delassus = match self {
             Tangent::Condensed(_) => DelassusForm::Formed,
@@ -132,7 +132,7 @@ pub(crate) struct CondensedStep {
     system: Bordered,
     /// Whether loose pieces are held in what is factored; none where nothing is.
     held: Option<bool>,
-    /// What is factored: later steps may start from it.
+    /// The factored matrix: later steps may start from it.
     factored: Factored,
     /// Rounding has spoilt that: every tangent is factored.
     spoilt: bool,

@@ -115,7 +115,7 @@ impl Iterate {
     }
 }
 
-/// What the laws and equilibrium make of an iterate.
+/// Residuals of an iterate in the laws and in equilibrium.
 struct Balance {
     P: Vec<f64>,
     branches: Vec<Branch>,

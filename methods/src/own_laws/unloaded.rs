@@ -7,7 +7,7 @@ use crate::condensed::problem::{Check, ContactProblem};
 use crate::contract::state::Status;
 use crate::error::MethodError;
 
-/// What a body is lifted by, relative to its deepest penetration: rounding must not leave any.
+/// Lift of a body, relative to its deepest penetration: rounding must not leave any.
 const CLEARANCE: f64 = 1.0 + 1e-9;
 
 /// No load on a floating body and no jump that its rigid motions could not close: no contact forces are needed, and there

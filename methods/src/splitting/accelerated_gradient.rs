@@ -122,7 +122,7 @@ struct Program<'g> {
     gradient: &'g Step,
     /// s by row.
     s: Vec<f64>,
-    /// What the shifts before teach.
+    /// Lesson of the shifts before.
     anderson: Anderson,
     /// t.
     t: f64,

@@ -117,7 +117,7 @@ struct Trial {
     branches: Vec<Branch>,
 }
 
-/// What a step needs to know of the system.
+/// Facts about the system that a step needs.
 pub(crate) struct Step {
     pub saddle: Saddle,
     /// r by row, in N/m.

@@ -1,4 +1,4 @@
-//! What can be wrong with a file that holds a contact problem.
+//! Faults of a file that holds a contact problem.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ pub enum InterchangeError {
     /// A problem whose parts do not fit, so that no file of it would be readable.
     #[error("cannot write the problem: {what}")]
     Unwritable {
-        /// What does not fit.
+        /// The misfit.
         what: String,
     },
 }
@@ -61,10 +61,11 @@ pub(super) fn check_size(
     found: usize,
     expected: usize,
 ) -> Result<(), InterchangeError> {
-    match found == expected {
-        true => Ok(()),
-        false => Err(unwritable(format!(
+    if found == expected {
+        Ok(())
+    } else {
+        Err(unwritable(format!(
             "{what}: {found} entries, expected {expected}"
-        ))),
+        )))
     }
 }

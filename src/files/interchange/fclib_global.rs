@@ -32,7 +32,7 @@ pub struct GlobalProblem {
     pub mu: Vec<f64>,
     /// Constraints on v.
     pub equality: Option<GlobalEquality>,
-    /// What the author says.
+    /// Words of the author.
     pub info: Info,
     /// Solution.
     pub solution: Option<Solution>,
@@ -69,14 +69,13 @@ impl GlobalProblem {
         let [f_name, w_name, b_name] = ["f", "w", "b"].map(|v| format!("{GROUP}/vectors/{v}"));
         let (unknowns, rows) = (tree.extent(&f_name)? as usize, rows(tree, &w_name, dim)?);
         let matrix = |name, cols| read_matrix(tree, &format!("{GROUP}/{name}"), unknowns, cols);
-        let equality = match tree.has_group(&format!("{GROUP}/G"))? {
-            false => None,
-            true => {
-                let constraints = tree.extent(&b_name)? as usize;
-                let g = matrix("G", constraints)?;
-                let b = tree.reals(&b_name, constraints)?;
-                Some(GlobalEquality { g, b })
-            }
+        let equality = if tree.has_group(&format!("{GROUP}/G"))? {
+            let constraints = tree.extent(&b_name)? as usize;
+            let g = matrix("G", constraints)?;
+            let b = tree.reals(&b_name, constraints)?;
+            Some(GlobalEquality { g, b })
+        } else {
+            None
         };
         let mut problem = Self {
             dim,

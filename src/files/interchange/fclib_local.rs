@@ -28,7 +28,7 @@ pub struct LocalProblem {
     pub mu: Vec<f64>,
     /// Unknowns λ beside the reactions, e.g. rigid motions.
     pub equality: Option<LocalEquality>,
-    /// What the author says.
+    /// Words of the author.
     pub info: Info,
     /// Solution.
     pub solution: Option<Solution>,

@@ -184,9 +184,10 @@ pub(super) fn check_matrix(
     check_size(&format!("{what} (columns)"), matrix.cols(), cols)?;
     // FCLIB counts in C's int.
     let sizes = [matrix.rows(), matrix.cols(), matrix.len()];
-    match sizes.iter().all(|&n| i32::try_from(n).is_ok()) {
-        true => Ok(()),
-        false => Err(unwritable(format!("{what}: more than 2147483647 entries"))),
+    if sizes.iter().all(|&n| i32::try_from(n).is_ok()) {
+        Ok(())
+    } else {
+        Err(unwritable(format!("{what}: more than 2147483647 entries")))
     }
 }
 

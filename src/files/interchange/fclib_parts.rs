@@ -1,4 +1,4 @@
-//! What the local and the global problem of FCLIB share: sizes, friction, info, solutions.
+//! Common parts of the local and the global problem of FCLIB: sizes, friction, info, solutions.
 
 use hdf5_pure::GroupBuilder;
 
@@ -7,7 +7,7 @@ use super::fclib_matrix::{check_matrix, put_matrix};
 use super::hdf5::{Tree, Writer, put_integers, put_reals, put_text, subgroup};
 use super::sparse::SparseMatrix;
 
-/// What the author says about a problem.
+/// Words of the author about a problem.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Info {
     /// Title.
@@ -128,7 +128,7 @@ pub(super) struct Layout<'a> {
     pub matrices: Vec<(&'static str, &'a SparseMatrix, [usize; 2])>,
     /// Name, vector, and the entries it must have.
     pub vectors: Vec<(&'static str, &'a [f64], usize)>,
-    /// What the author says.
+    /// Words of the author.
     pub info: &'a Info,
     /// Lengths of solutions.
     pub lengths: Lengths,

@@ -95,7 +95,7 @@ impl Tree {
         self.found(name, self.file.dataset(name))
     }
 
-    /// What was looked for, if it is there.
+    /// The thing looked for, if it is there.
     fn found<T>(
         &self,
         name: &str,
@@ -173,7 +173,7 @@ impl Tree {
         self.all(name, len, read, |v| v.is_finite(), "finite numbers")
     }
 
-    /// What was read, if it is as much as the shape says (of a spoilt layout there may be less), and all of it fits.
+    /// The numbers read, if they are as many as the shape says (of a spoilt layout there may be fewer), and all of them fit.
     fn all<T: Copy + ToString>(
         &self,
         name: &str,

@@ -45,9 +45,10 @@ impl SparseMatrix {
         let n = a.size();
         let column = |j| a.column(j).map(move |(i, value)| (i, j, value));
         let stored = Self::of(n, n, (0..n).flat_map(column));
-        match a.is_symmetric() {
-            true => stored.mirrored(),
-            false => stored,
+        if a.is_symmetric() {
+            stored.mirrored()
+        } else {
+            stored
         }
     }
 
@@ -97,9 +98,12 @@ impl SparseMatrix {
     pub fn symmetric_part(&self) -> Result<SquareMatrix, MethodError> {
         let (n, least) = (self.rows().max(self.cols()), self.rows().min(self.cols()));
         // Halves of an exactly symmetric matrix add up to its entries again; a diagonal entry comes once, and whole.
-        let entries = self.entries().map(|(i, j, value)| match i == j {
-            true => (i, j, value),
-            false => (i.max(j), i.min(j), 0.5 * value),
+        let entries = self.entries().map(|(i, j, value)| {
+            if i == j {
+                (i, j, value)
+            } else {
+                (i.max(j), i.min(j), 0.5 * value)
+            }
         });
         let lower = Self::of(n, n, entries.chain((0..n).map(|j| (j, j, 0.0))));
         let (ends, rows, values) = lower.parts();

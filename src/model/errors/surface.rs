@@ -86,7 +86,7 @@ pub(super) fn rows(
     rows
 }
 
-/// What the contact points should hold of an exact surface field: its mean over the function of a point, or its value there.
+/// Values of an exact surface field at the contact points: its mean over the function of a point, or its value there.
 fn exact_at_points(body: &Body, field: &dyn Fn(&Point) -> [f64; 3]) -> Vec<[f64; 3]> {
     let mut sums = vec![([0.0; 3], 0.0); body.points.len()];
     let quadrature = body.surface.quadrature.iter();

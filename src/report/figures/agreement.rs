@@ -13,7 +13,7 @@ const FEW: usize = 4;
 pub struct Agreement {
     /// Runs to draw with label and look, the band first.
     pub curves: Vec<(usize, String, Style)>,
-    /// What the curves say, as a sentence.
+    /// Finding of the curves, as a sentence.
     pub title: String,
 }
 
@@ -55,13 +55,14 @@ pub fn agreement(
     apart.sort_by(|a, b| off(*b).total_cmp(&off(*a)));
     if let Some(worst) = apart.first() {
         let percent = 100.0 * off(*worst);
-        title += &match percent.is_finite() {
-            true => format!(
+        title += &if percent.is_finite() {
+            format!(
                 "; {} is off by up to {} %",
                 plain(methods[*worst]),
                 significant(percent, 2)
-            ),
-            false => format!("; {} cannot be compared", plain(methods[*worst])),
+            )
+        } else {
+            format!("; {} cannot be compared", plain(methods[*worst]))
         };
     }
     let labels: Vec<&str> = apart.iter().map(|i| methods[*i]).collect();

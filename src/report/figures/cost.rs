@@ -1,4 +1,4 @@
-//! What the methods cost: time of every method on every case, relative to the fastest.
+//! Costs of the methods: time of every method on every case, relative to the fastest.
 
 use super::kind::Kind;
 use super::runs::distinct;
@@ -8,7 +8,7 @@ use crate::report::{Bundle, ReportError};
 use crate::run::verdict::VerdictKind;
 use crate::studies::paper::comparison::ComparisonRow;
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "cost.svg",
     question: "Which method is far from the fastest on which case, by how much, and who fails?",

@@ -12,7 +12,7 @@ use crate::studies::convergence::orders::{self, ErrorRow, OrderRow, ROUND_OFF};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "*.error.svg",
     question: "How fast does this quantity converge under refinement, with which contact space and enrichment?",
@@ -59,7 +59,7 @@ pub fn add(
     Ok(())
 }
 
-/// What tells the figure of a quantity at a place apart.
+/// Name that tells the figure of a quantity at a place apart.
 fn name(row: &OrderRow, at: &str) -> String {
     let variant = &row.finest.variant;
     let mu = format!("mu-{}", value(variant.friction));

@@ -12,7 +12,7 @@ use crate::studies::results::Results;
 use crate::studies::rows::{QuantityRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "*.loop.svg",
     question: "How much energy does friction take on this load path, and do the methods agree on it?",
@@ -133,7 +133,7 @@ fn figure(
     Figure::new(&title, &caption, 1, vec![panel])
 }
 
-/// What a run dissipates over the path, beside the closed form if the case states it.
+/// Dissipation of a run over the path, beside the closed form if the case states it.
 fn dissipation(key: &RunKey, results: &Results, quantities: &[QuantityRow<'_>]) -> Option<String> {
     let own = |row: &&QuantityRow<'_>| {
         let quantity = row.quantity;

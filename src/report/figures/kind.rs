@@ -1,4 +1,4 @@
-//! What a kind of figure says of itself.
+//! Description of a kind of figure.
 
 use crate::report::{Bundle, ReportError};
 
@@ -10,7 +10,7 @@ pub struct Kind {
     pub file: &'static str,
     /// The reader's question that it answers.
     pub question: &'static str,
-    /// What is drawn, for the manual.
+    /// Contents of the drawing, for the manual.
     pub shows: &'static str,
 }
 

@@ -7,7 +7,7 @@ use crate::report::plot::{Cell, HeatMap, base, plain};
 use crate::report::{Bundle, ReportError};
 use crate::studies::analysis::options::{Step, Sweep};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "options.svg",
     question: "What does a parameter of a method change?",
@@ -42,9 +42,10 @@ pub fn add(bundle: &mut Bundle, sweeps: &[Sweep], caveat: &str) -> Result<(), Re
         steps.any(|step| step.solved < sweep.problems)
     });
     let lost = distinct(lost.map(|sweep| plain(base(&sweep.method))));
-    let title = match lost.is_empty() {
-        true => "No value that was tried costs a method a problem".to_owned(),
-        false => format!("At some value problems are lost by {}", lost.join(", ")),
+    let title = if lost.is_empty() {
+        "No value that was tried costs a method a problem".to_owned()
+    } else {
+        format!("At some value problems are lost by {}", lost.join(", "))
     };
     let map = HeatMap {
         title,
@@ -81,9 +82,10 @@ fn cell(sweep: &Sweep, step: Option<&Step>) -> Cell {
     };
     let share = step.solved as f64 / sweep.problems as f64;
     let ratio = step.ratio[0];
-    let (tint, text) = match share < 1.0 {
-        true => (1.0, format!("{} %", fixed((100.0 * share).floor(), 0))),
-        false => (ratio.ln() / MOST.ln() * 0.6, significant(ratio, 2)),
+    let (tint, text) = if share < 1.0 {
+        (1.0, format!("{} %", fixed((100.0 * share).floor(), 0)))
+    } else {
+        (ratio.ln() / MOST.ln() * 0.6, significant(ratio, 2))
     };
     Cell {
         tint: tint.clamp(0.0, 1.0),

@@ -10,7 +10,7 @@ use crate::studies::analysis::profile::performance;
 use crate::studies::analysis::test_set::TestSet;
 use stickslip_methods::Tier;
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "*profile.time.svg",
     question: "How often is a method fastest, and how often within a factor of the fastest?",

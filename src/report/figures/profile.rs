@@ -13,7 +13,7 @@ use crate::studies::results::Results;
 use crate::studies::rows::{ExactPoint, IncrementRow, PointRow, RunKey};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "*.profile.svg",
     question: "What happens along the crack, and do the methods agree on it?",
@@ -104,7 +104,7 @@ struct Profile<'a> {
     crack: usize,
     /// Round-off of a jump [m].
     round_off: f64,
-    /// What the tolerance leaves of contact forces [N/m] and of jumps [m], by run.
+    /// Rest that the tolerance leaves of contact forces [N/m] and of jumps [m], by run.
     left: Vec<[f64; 2]>,
 }
 
@@ -156,9 +156,12 @@ impl<'a> Profile<'a> {
     fn is_noise(&self, quantity: usize) -> bool {
         let jump = quantity >= 2;
         let mut exact = self.exact.values().flatten();
-        let small = |row: &PointRow<'_>, [force, gap]: [f64; 2]| match jump {
-            true => found(row.point, quantity).abs() <= gap.max(self.round_off),
-            false => found(row.point, quantity).abs() * row.point.weight <= force,
+        let small = |row: &PointRow<'_>, [force, gap]: [f64; 2]| {
+            if jump {
+                found(row.point, quantity).abs() <= gap.max(self.round_off)
+            } else {
+                found(row.point, quantity).abs() * row.point.weight <= force
+            }
         };
         let mut runs = self.runs.iter().zip(&self.left);
         exact
@@ -184,9 +187,10 @@ impl<'a> Profile<'a> {
     fn by_method(&self) -> Figure {
         let largest = [0, 1, 2, 3].map(|quantity| self.largest(quantity));
         // Noise is not compared with itself.
-        let traction = match self.is_noise(0) && self.is_noise(1) {
-            true => f64::INFINITY,
-            false => largest[0].max(largest[1]).max(f64::MIN_POSITIVE),
+        let traction = if self.is_noise(0) && self.is_noise(1) {
+            f64::INFINITY
+        } else {
+            largest[0].max(largest[1]).max(f64::MIN_POSITIVE)
         };
         let jump = largest[2]
             .max(largest[3])
@@ -252,9 +256,10 @@ impl<'a> Profile<'a> {
     fn panel(&self, quantity: usize, curves: &[(usize, String, Style)]) -> Panel {
         let (largest, unit) = (self.largest(quantity), UNITS[quantity]);
         // Jumps of sticking points and forces of open ones are drawn as zero, not on an axis of attometres or millipascals.
-        let (factor, unit) = match self.is_noise(quantity) {
-            true => (0.0, unit.to_owned()),
-            false => prefixed(largest, unit),
+        let (factor, unit) = if self.is_noise(quantity) {
+            (0.0, unit.to_owned())
+        } else {
+            prefixed(largest, unit)
         };
         let y = Axis::linear(&format!("{} [{unit}]", name(quantity))).through(&[0.0]);
         let mut panel = Panel::new(Axis::linear("distance along the crack [m]"), y, 34.0);

@@ -7,7 +7,7 @@ use crate::report::{Bundle, ReportError};
 use crate::studies::results::Results;
 use crate::studies::rows::{HistoryRow, IncrementRow};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "*.residual.svg",
     question: "How does every method converge on this problem?",

@@ -95,7 +95,7 @@ fn time(all: &[Sample<'_>], fastest: &[&str], caption: &str) -> Figure {
     Figure::new(&title, caption, 2, panels)
 }
 
-/// What takes least time on the largest bodies of a dimension, of the methods that solve most of them.
+/// The method that takes least time on the largest bodies of a dimension, of those that solve most of them.
 fn leader(all: &[Sample<'_>], dim: usize) -> Option<String> {
     let own = || all.iter().filter(|s| s.dim == dim && s.time.is_finite());
     let largest = own().map(|s| s.points).max()?;

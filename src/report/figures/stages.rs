@@ -12,7 +12,7 @@ use crate::studies::analysis::{
 };
 use crate::studies::record::{Record, Spent};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "stages.*.svg",
     question: "Where does the time of a run go?",

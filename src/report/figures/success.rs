@@ -7,7 +7,7 @@ use crate::report::plot::{Cell, HeatMap, is_exact, plain, rank};
 use crate::report::{Bundle, ReportError};
 use crate::studies::analysis::success::{BY_FRICTION, SuccessRow};
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "success.svg",
     question: "Which method can be relied on for which problems?",
@@ -50,9 +50,10 @@ pub fn add(bundle: &mut Bundle, rows: &[SuccessRow], caveat: &str) -> Result<(),
             .iter()
             .find(|row| row.method == name && row.class == class);
         let [rate, low, _] = own.map_or([f64::NAN; 3], |row| row.kept());
-        let (text, below) = match rate.is_finite() {
-            true => (percent(rate), format!("≥{}", percent(low))),
-            false => ("–".into(), String::new()),
+        let (text, below) = if rate.is_finite() {
+            (percent(rate), format!("≥{}", percent(low)))
+        } else {
+            ("–".into(), String::new())
         };
         let tint = 100.0 * (1.0 - rate) / (100.0 - WORST);
         Cell { tint, text, below }
@@ -70,12 +71,13 @@ pub fn add(bundle: &mut Bundle, rows: &[SuccessRow], caveat: &str) -> Result<(),
     let (failing, perfect): (Vec<&str>, Vec<&str>) = exact.partition(|name| fails(name));
     let perfect: Vec<String> = perfect.into_iter().map(plain).collect();
     let others = failing.len();
-    let title = match perfect.is_empty() {
-        true => format!("None of {others} exact methods solves every problem"),
-        false => format!(
+    let title = if perfect.is_empty() {
+        format!("None of {others} exact methods solves every problem")
+    } else {
+        format!(
             "Every problem is solved by {}, not by {others} others",
             perfect.join(", ")
-        ),
+        )
     };
     // Friction coefficients of a class stand side by side below its name.
     let parts = |class: &&str| match class.split_once(BY_FRICTION) {

@@ -11,7 +11,7 @@ use crate::studies::record::Record;
 use crate::studies::statistics::Timing;
 use crate::studies::task::Problem;
 
-/// What it is.
+/// The kind.
 pub static KIND: Kind = Kind {
     file: "time_against_solver_error.*.svg",
     question: "What does every digit cost with every method?",

@@ -11,7 +11,7 @@ use crate::studies::convergence::orders::{ErrorRow, Kind, ROUND_OFF};
 use crate::studies::record::Record;
 use crate::studies::task::Problem;
 
-/// What it is.
+/// The kind.
 pub static KIND: super::kind::Kind = super::kind::Kind {
     file: "time_against_total_error.*.svg",
     question: "How long does a wanted accuracy of the answer take, from mesh to method?",

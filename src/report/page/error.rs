@@ -1,4 +1,4 @@
-//! What can go wrong while a folder becomes a page.
+//! Failures while a folder becomes a page.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub enum PageError {
         file: PathBuf,
         /// Line in the file, from 1.
         line: u64,
-        /// What is wrong.
+        /// The fault, in words.
         reason: String,
     },
     /// A table without a column that its name promises.
@@ -23,7 +23,7 @@ pub enum PageError {
     Column {
         /// The table.
         file: PathBuf,
-        /// What is missing.
+        /// The missing thing.
         column: String,
     },
     /// A figure or provenance that cannot be shown.
@@ -31,7 +31,7 @@ pub enum PageError {
     Content {
         /// The file.
         file: PathBuf,
-        /// What is wrong.
+        /// The fault, in words.
         reason: String,
     },
     /// Nothing to show.

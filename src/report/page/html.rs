@@ -21,7 +21,7 @@ pub struct Section {
     pub id: &'static str,
     /// Heading.
     pub title: &'static str,
-    /// What the reader finds here.
+    /// Contents for the reader.
     pub lead: &'static str,
     /// Contents in order.
     pub blocks: Vec<Block>,
@@ -50,7 +50,7 @@ pub enum Block {
 pub struct Fact {
     /// The number, as shown.
     pub value: String,
-    /// What it is.
+    /// The kind.
     pub label: String,
     /// Section that tells more.
     pub section: &'static str,
@@ -67,7 +67,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// What of a table is read; times only in rows with an honest verdict.
+    /// The part of a table that is read; times only in rows with an honest verdict.
     ///
     /// # Errors
     /// Those of [`Sheet::texts`].
@@ -101,9 +101,10 @@ impl Grid {
         let (place, name) = split(path);
         let alone = place.is_empty() || folder.named(name).len() == 1;
         let clean = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        let place = match alone {
-            true => String::new(),
-            false => format!(" ({place})"),
+        let place = if alone {
+            String::new()
+        } else {
+            format!(" ({place})")
         };
         let shown = view.columns.into_iter();
         Ok(Self {
@@ -249,7 +250,7 @@ fn data(cell: &str, column: &About, numeric: bool) -> Markup {
         Ok(x) if x.is_finite() => typeset(cell),
         _ => "–".to_owned(),
     };
-    // What is sorted by, where it is not what is read.
+    // The key of sorting, where it is not what is read.
     let full = (text != cell).then_some(cell);
     html! { td.n data-v=[full] { (text) } }
 }

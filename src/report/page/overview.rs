@@ -6,7 +6,7 @@ use crate::report::figures::distinct;
 use crate::report::number::significant;
 use crate::run::verdict::{Verdict, VerdictKind};
 
-/// What a kind of verdict says.
+/// Meaning of a kind of verdict.
 fn meaning(kind: VerdictKind) -> &'static str {
     match kind {
         VerdictKind::Solved => {
@@ -116,9 +116,10 @@ fn facts(folder: &Folder) -> Result<Vec<Fact>, PageError> {
     }
     if folder.has("runs.csv") {
         let verdicts: Vec<Verdict> = folder.sheet("runs.csv")?.parsed("verdict")?;
-        let section = match folder.has("comparison.csv") {
-            true => "methods",
-            false => "runs",
+        let section = if folder.has("comparison.csv") {
+            "methods"
+        } else {
+            "runs"
         };
         let count = |wanted: fn(&Verdict) -> bool| {
             let found = verdicts.iter().filter(|verdict| wanted(verdict));

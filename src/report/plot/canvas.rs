@@ -297,7 +297,7 @@ fn finish_svg(svg: &str, [width, height]: [f64; 2], title: &str) -> String {
     out.replace(" opacity=\"1\"", "")
 }
 
-/// What closes a path.
+/// The end of a path.
 const PATH_END: &str = "\"/>\n";
 
 /// Style and points of a line as plotters writes it.
@@ -311,7 +311,7 @@ fn styled(text: &str, size: f64) -> String {
     let (shift, small) = (0.22 * size, 0.75 * size);
     let down = format!("<tspan dy=\"{shift:.1}\" font-size=\"{small:.1}\">");
     let up = format!("</tspan><tspan dy=\"{:.1}\">", -shift);
-    // What goes back up is open to the end of the text.
+    // A path that goes back up is open to the end of the text.
     let open = text.matches(SUB_END).count();
     let text = text.replace(SUB, &down).replace(SUB_END, &up);
     let text = text.replace(ITALIC, "<tspan font-style=\"italic\">");

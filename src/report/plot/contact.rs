@@ -130,7 +130,7 @@ impl States {
         }
     }
 
-    /// What there is, in a row.
+    /// The states that occur, in a row.
     pub(super) fn legend(&self, canvas: &mut Canvas, [left, top]: [f64; 2], marked: bool) {
         let mut x = left;
         for (index, (name, tint)) in STATUS.into_iter().enumerate() {
@@ -155,7 +155,7 @@ struct Face<'a> {
     arrows: Vec<[f64; 3]>,
     /// Length of the longest.
     largest: f64,
-    /// What the arrows are, in the legend.
+    /// Name of the arrows in the legend.
     label: String,
 }
 

@@ -65,7 +65,7 @@ fn told(value: f64, unit: &str) -> String {
     format!("{} {unit}", significant(value * factor, 3))
 }
 
-/// What is drawn, the same in all panels.
+/// The drawing, the same in all panels.
 struct Body<'a> {
     faces: Vec<Vec<usize>>,
     outline: Vec<[usize; 2]>,
@@ -179,9 +179,10 @@ impl Body<'_> {
                 let middle = [0, 1].map(|c| (at(a)[c] + at(b)[c]) / 2.0);
                 for point in [a, b] {
                     let half = vec![paper(at(point)), paper(middle)];
-                    let (colour, width) = match edge {
-                        true => (BLACK, STRIP_MM + 0.3),
-                        false => (self.states.tint(point), STRIP_MM),
+                    let (colour, width) = if edge {
+                        (BLACK, STRIP_MM + 0.3)
+                    } else {
+                        (self.states.tint(point), STRIP_MM)
                     };
                     canvas.pixel_line(half, colour, width);
                 }
@@ -208,9 +209,10 @@ fn faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Vec<usize>>, Re
             faces.push(cell.points.clone());
         }
     }
-    match faces.is_empty() {
-        true => fail("cells", "no triangle, polygon or quad to draw"),
-        false => Ok(faces),
+    if faces.is_empty() {
+        fail("cells", "no triangle, polygon or quad to draw")
+    } else {
+        Ok(faces)
     }
 }
 

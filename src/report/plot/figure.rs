@@ -34,9 +34,9 @@ fn values(panel: &Panel, c: usize, triangles: &[Triangle]) -> Vec<f64> {
 /// A whole figure. Labels may hold [`subscript`](super::subscript) and [`italic`](super::italic).
 #[derive(Debug, Clone)]
 pub struct Figure {
-    /// What it shows, as a sentence where the data say one.
+    /// The finding as a sentence, where the data say one.
     pub title: String,
-    /// What the reader must know besides: case, mesh, what was left out.
+    /// Further facts for the reader: case, mesh, what was left out.
     pub caption: String,
     /// Panels of a row: one is 85 mm wide, more share 170 mm.
     pub columns: usize,
@@ -84,9 +84,12 @@ impl Figure {
         };
         let panels: Vec<&Panel> = fitted.iter().map(|(panel, _)| panel).collect();
         // Widths: room for the labels of every column, the rest shared.
-        let room = |i: usize| match self.labels(i)[1] {
-            true => room_for_labels(&panels[i].axes[1]),
-            false => GAP_MM,
+        let room = |i: usize| {
+            if self.labels(i)[1] {
+                room_for_labels(&panels[i].axes[1])
+            } else {
+                GAP_MM
+            }
         };
         let most = |column: usize| (column..panels.len()).step_by(columns).map(room);
         let rooms: Vec<f64> = (0..columns).map(|c| most(c).fold(0.0, f64::max)).collect();
@@ -95,9 +98,10 @@ impl Figure {
         let head = Head::new(&self.title, &self.caption, width);
         let heading = |p: &&Panel| wrapped(&p.heading, TICK_PT, frame);
         let headings: Vec<Vec<String>> = panels.iter().map(heading).collect();
-        let legends: Vec<Legend> = match self.own_legends {
-            true => panels.chunks(1).map(|own| Legend::of(own, frame)).collect(),
-            false => vec![Legend::of(&panels, width - 2.0 * MARGIN_MM)],
+        let legends: Vec<Legend> = if self.own_legends {
+            panels.chunks(1).map(|own| Legend::of(own, frame)).collect()
+        } else {
+            vec![Legend::of(&panels, width - 2.0 * MARGIN_MM)]
         };
         let (mut tops, mut end) = (Vec::new(), head.height());
         for first in (0..panels.len()).step_by(columns) {

@@ -22,11 +22,11 @@ pub struct Cell {
 /// A table of tinted cells, 170 mm wide.
 #[derive(Debug, Clone)]
 pub struct HeatMap {
-    /// What it shows, as a sentence where the data say one.
+    /// The finding as a sentence, where the data say one.
     pub title: String,
-    /// What tints and signs mean.
+    /// Meaning of tints and signs.
     pub caption: String,
-    /// What stands above groups of columns, and how many columns each has.
+    /// Headings above groups of columns, and how many columns each has.
     pub groups: Vec<(String, usize)>,
     /// Above the columns; long names are turned upwards.
     pub columns: Vec<String>,
@@ -65,9 +65,10 @@ impl HeatMap {
         head.draw(&mut canvas);
         for (column, name) in self.columns.iter().enumerate() {
             let x = left + width * (column as f64 + 0.5);
-            let (up, anchor) = match upwards {
-                true => (0.5 * text_width(name, TICK_PT) + 1.0, Anchor::Upwards),
-                false => (2.0, Anchor::Middle),
+            let (up, anchor) = if upwards {
+                (0.5 * text_width(name, TICK_PT) + 1.0, Anchor::Upwards)
+            } else {
+                (2.0, Anchor::Middle)
             };
             canvas.text(name, [x, top - up], TICK_PT, anchor, BLACK);
         }
@@ -77,9 +78,10 @@ impl HeatMap {
             canvas.text(name, at, TICK_PT, Anchor::End, BLACK);
             for (column, cell) in cells.iter().enumerate() {
                 let x = left + width * column as f64;
-                let tint = match cell.tint.is_finite() {
-                    true => between(WHITE, FULL, cell.tint.clamp(0.0, 1.0)),
-                    false => LIGHT,
+                let tint = if cell.tint.is_finite() {
+                    between(WHITE, FULL, cell.tint.clamp(0.0, 1.0))
+                } else {
+                    LIGHT
                 };
                 canvas.boxed([x, y], [x + width, y + row], tint, 0.05);
                 let parts = if cell.below.is_empty() {

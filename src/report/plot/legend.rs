@@ -12,7 +12,7 @@ const GAP_MM: f64 = 2.0;
 /// Least width of a column [mm].
 const COLUMN_MM: f64 = 27.0;
 
-/// What the labels of panels mean, each told once.
+/// Meaning of the labels of panels, each told once.
 pub struct Legend<'a> {
     /// The sample, the lines of its label, and its place [mm].
     entries: Vec<(&'a Series, Vec<String>, [f64; 2])>,

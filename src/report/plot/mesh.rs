@@ -1,4 +1,4 @@
-//! What pictures of meshes share: faces and edges of the boundary, the deformed shape, lines along edges.
+//! Common parts of pictures of meshes: faces and edges of the boundary, the deformed shape, lines along edges.
 //!
 //! Cells of a picture share their points, but for the faces of a crack, which have points of their own: what belongs to one
 //! cell alone is the boundary, crack faces among it.
@@ -46,9 +46,10 @@ pub fn deformed(picture: &FieldMesh) -> Result<(Vec<[f64; 3]>, f64), ReportError
     let diameter = length(&std::array::from_fn(extent));
     let lengths = displacement.iter().map(length).filter(|u| u.is_finite());
     let largest = lengths.fold(0.0, f64::max);
-    let factor = match largest > 0.0 && diameter > 0.0 {
-        true => nice_step(0.02 * diameter / largest),
-        false => 1.0,
+    let factor = if largest > 0.0 && diameter > 0.0 {
+        nice_step(0.02 * diameter / largest)
+    } else {
+        1.0
     };
     let moved = picture.points.iter().zip(displacement);
     let places = moved.map(|(x, u)| std::array::from_fn(|c| x[c] + factor * u[c]));

@@ -70,15 +70,17 @@ impl Triangle {
             let factor = factors.fold(f64::INFINITY, f64::min) / apart.powi(1 + index as i32);
             let y = |x: f64| factor * x.powf(slope);
             // At the high end: the number of the upright leg stands away from the curves.
-            let x = match slope < 0.0 {
-                true => [0.1, 0.32].map(|part| first * width.powf(part)),
-                false => [0.32, 0.1].map(|part| last / width.powf(part)),
+            let x = if slope < 0.0 {
+                [0.1, 0.32].map(|part| first * width.powf(part))
+            } else {
+                [0.32, 0.1].map(|part| last / width.powf(part))
             };
             // The triangle stands clear of the line; the right angle is under its higher end.
             let [start, end] = x.map(|x| [x, y(x) / apart.powf(0.7)]);
-            let corner = match slope > 0.0 {
-                true => [end[0], start[1]],
-                false => [start[0], end[1]],
+            let corner = if slope > 0.0 {
+                [end[0], start[1]]
+            } else {
+                [start[0], end[1]]
             };
             let (corners, legs) = ([start, end, corner], [guide.run, guide.rise.abs()]);
             triangles.push(Self { corners, legs });
@@ -106,9 +108,10 @@ impl Triangle {
         let [x, y] = [0, 1].map(|c| 0.5 * (start[c] + end[c]));
         let below = [x, start[1].max(end[1]) + 1.7];
         canvas.text(&run, below, SMALL_PT, Anchor::Middle, BLACK);
-        let (off, anchor) = match corner[0] < end[0] {
-            true => (-0.8, Anchor::End),
-            false => (0.8, Anchor::Start),
+        let (off, anchor) = if corner[0] < end[0] {
+            (-0.8, Anchor::End)
+        } else {
+            (0.8, Anchor::Start)
         };
         canvas.text(&rise, [corner[0] + off, y], SMALL_PT, anchor, BLACK);
     }

@@ -1,4 +1,4 @@
-//! What a figure shows, before it is drawn: series of points, power laws to compare with, and the axes they share.
+//! Contents of a figure before it is drawn: series of points, power laws to compare with, and the axes they share.
 
 use super::axis::Axis;
 use super::style::{Marker, Style};
@@ -26,7 +26,7 @@ pub struct Series {
     pub label: String,
     /// Of line and markers.
     pub style: Style,
-    /// What joins the points.
+    /// The line that joins the points.
     pub draw: Draw,
     /// x and y; what has no place on the axes is left out.
     pub points: Vec<[f64; 2]>,
@@ -81,7 +81,7 @@ pub struct Panel {
     pub axes: [Axis; 2],
     /// Of the frame [mm]; named y axes take what their names need.
     pub height: f64,
-    /// What is drawn, the last on top.
+    /// Curves, the last on top.
     pub series: Vec<Series>,
     /// Horizontal lines.
     pub levels: Vec<f64>,

@@ -130,7 +130,7 @@ impl Style {
         Self::line(colour, CURVE_MM, dashes).marked(marker, size, filled)
     }
 
-    /// What several methods share: a wide band on which thin lines are seen.
+    /// A wide band that several methods share, on which thin lines are seen.
     pub fn band() -> Self {
         let line = Self::line(MIDDLE, 1.1, &[]);
         Self {

@@ -106,14 +106,14 @@ impl Digits {
     }
 }
 
-/// What is known of a column without any row.
+/// A column without any row.
 #[derive(Debug, Clone, Copy)]
 pub struct About {
     /// Name in the CSV file, the unit at its end.
     pub name: &'static str,
     /// Unit; `–` of numbers without one, empty of what is no measure.
     pub unit: &'static str,
-    /// What stands in the column.
+    /// Contents of the column.
     pub meaning: &'static str,
     /// Whether rows are sorted by it, among the columns so marked in their order.
     pub key: bool,
@@ -247,7 +247,7 @@ impl About {
 pub struct Column<R> {
     /// Name, unit, meaning, digits.
     pub about: About,
-    /// What stands in it.
+    /// Its contents.
     pub get: fn(&R) -> Value,
 }
 

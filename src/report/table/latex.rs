@@ -108,9 +108,10 @@ fn cell(text: &str, set: &Set) -> String {
 /// A line of the table. A bracket or an asterisk behind the `\\` of the line before would be taken for its argument.
 fn line(cells: impl Iterator<Item = String>) -> String {
     let line = cells.collect::<Vec<_>>().join(" & ");
-    let guard = match line.starts_with(['[', '*']) {
-        true => "{}",
-        false => "",
+    let guard = if line.starts_with(['[', '*']) {
+        "{}"
+    } else {
+        ""
     };
     format!("    {guard}{line} \\\\\n")
 }

@@ -1,4 +1,4 @@
-//! What is known of a table without its rows: for `stickslip show schema` and for the page, which reads files.
+//! A table without its rows: for `stickslip show schema` and for the page, which reads files.
 
 use super::readable::escape_markdown;
 use super::{About, Pivot, Row};

@@ -1,4 +1,4 @@
-//! What of a table is read: the columns marked so, or a table of two ways where the file has a row for each of its cells.
+//! The part of a table that is read: the columns marked so, or a table of two ways where the file has a row for each of its cells.
 
 use super::About;
 
@@ -43,7 +43,7 @@ pub struct View {
     pub columns: Vec<Shown>,
     /// Cells.
     pub rows: Vec<Vec<String>>,
-    /// What stands below the headings that were values, for the caption; may be empty.
+    /// Contents below the headings that were values, for the caption; may be empty.
     pub note: String,
 }
 

@@ -6,9 +6,9 @@ use crate::studies::analysis::causes::{CauseRow, StoppingRow};
 
 impl Row for CauseRow {
     const NAME: &'static str = "causes";
-    const TITLE: &'static str = "Why methods gave up, and what cures it";
+    const TITLE: &'static str = "Why methods gave up, and what remedies it";
     const QUESTION: &'static str = "Why does a method give up, how often for which cause, and what solves the problem instead?";
-    const NOTES: &'static str = "Every run that gave up is run again under observation; the method does not know. Causes are measurements with thresholds, asked in a fixed order: docs/stability.md has them. A cure is tried on every failed run: the method with one other option (`r`, `kinks`, `anderson`, `spectral`, `step`, `variant`), then `newton-ac`, `pdas`, `hybrid`, `interior-point`; the first that solves it counts.";
+    const NOTES: &'static str = "Every run that gave up is run again under observation; the method does not know. Causes are measurements with thresholds, asked in a fixed order: docs/stability.md has them. A remedy is tried on every failed run: the method with one other option (`r`, `kinks`, `anderson`, `spectral`, `step`, `variant`), then `newton-ac`, `pdas`, `hybrid`, `interior-point`; the first that solves it counts.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -20,8 +20,8 @@ impl Row for CauseRow {
             "period_median" "" .named("period, median") = r.period, "iterations after which a cycle repeats";
             "more_median" "" .significant(2).named("iterations left, median").power(2) = r.more, "iterations that are left at the observed rate";
             "several" "" .named("several solutions") = r.several, "of these runs, on problems of which several solutions are known";
-            "cured" "" .shown() = r.cured, "of these runs, with a cure";
-            "cure" "" .shown() = r.cure.clone(), "the cure that worked most often";
+            "remedied" "" .shown() = r.remedied, "of these runs, with a remedy";
+            "remedy" "" .shown() = r.remedy.clone(), "the remedy that worked most often";
             "example" "" = r.example.0.clone(), "the problem with the fewest contact points";
             "example_friction" "–" .named("its μ") = r.example.1, "its friction coefficient";
             "example_points" "" .named("its points") = r.example.2, "its contact points";

@@ -1,4 +1,4 @@
-//! What runs find increment by increment: quantities, histories, contact points, expected numbers.
+//! Findings of runs increment by increment: quantities, histories, contact points, expected numbers.
 
 use super::words::*;
 use crate::report::table::{Column, Order, Row, columns};

@@ -1,4 +1,4 @@
-//! What a study says of the methods: rates, ranks, profiles, curves.
+//! Conclusions of a study about the methods: rates, ranks, curves.
 
 use std::cmp::Ordering;
 
@@ -168,7 +168,7 @@ pub struct PointRow<'a> {
     pub problem: String,
     /// Name of the curve.
     pub label: String,
-    /// What varies along it.
+    /// The quantity that varies along it.
     pub swept: Swept,
     /// Whether the limit of the method are the contact laws.
     pub exact: bool,
@@ -214,7 +214,7 @@ impl Row for PointRow<'_> {
     }
 }
 
-/// What is compared at every tier.
+/// The sets compared at every tier.
 pub fn sets(records: &[Record]) -> [TestSet<'_>; 3] {
     Tier::ALL.map(|tier| TestSet::new(records, tier))
 }

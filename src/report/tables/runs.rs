@@ -66,7 +66,7 @@ impl RunRow<'_> {
         self.0.found.solver_error.as_ref().map_or(f64::NAN, of)
     }
 
-    /// What is known of a run that gave up, where that was asked.
+    /// Explanation of a run that gave up, where that was asked.
     fn why(&self) -> Option<&Explanation> {
         self.0.found.why.as_ref()
     }
@@ -143,7 +143,7 @@ impl Row for RunRow<'_> {
             "exact" "" = r.0.found.exact, "whether the limit of the method are the contact laws";
             "verdict" "" .shown() = &r.0.found.verdict, VERDICT;
             "cause" "" .shown() = r.0.found.cause(), CAUSE;
-            "cure" "" .shown() = r.why().and_then(|why| why.cure.clone()), CURE;
+            "remedy" "" .shown() = r.why().and_then(|why| why.remedy.clone()), REMEDY;
             "measure" "–" .significant(3) = r.why().map(|why| why.diagnosis.measure), MEASURE;
             "period" "" = r.why().and_then(|why| why.diagnosis.period), "iterations after which a cycle repeats";
             "flips" "" = r.flips(), "contact points that change between open, stick and the directions of slip within a cycle, or while wandering, from 0";

@@ -76,7 +76,7 @@ impl Row for LadderRow {
             "parameter" "" .shown() = r.parameter.clone(), "what changes, with its unit";
             "least" "" .shown().significant(3) = r.range[0], "least value, in the unit of the parameter";
             "largest" "" .shown().significant(3) = r.range[1], "largest value";
-            "values" "" .shown() = r.rungs, "values tried";
+            "values" "" .shown() = r.steps, "values tried";
             "right" "" .shown() = r.right, "values at which the default method's answer was right";
             "others" "" .shown() = r.others.clone(), "the other values with their faults";
             "error" "–" .shown().residual() = r.error, "largest error where it was right";

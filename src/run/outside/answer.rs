@@ -1,4 +1,4 @@
-//! What a program from outside answers: numbers in a file, and what it says of itself on its standard output.
+//! Answers of a program from outside: numbers in a file, and what it says of itself on its standard output.
 
 use stickslip_methods::Status;
 
@@ -28,7 +28,7 @@ const NAMED: [Status; 5] = [
 /// The reactions, `dim` numbers per point, then one per rigid motion, apart by blanks or ends of lines.
 ///
 /// # Errors
-/// What is no finite number, with its line, and another count than expected.
+/// A number that is not finite, with its line, and another count than expected.
 pub fn reactions(text: &str, rows: usize, motions: usize, dim: usize) -> Result<Vec<f64>, String> {
     let mut numbers = Vec::new();
     for (index, line) in text.lines().enumerate() {
@@ -57,12 +57,12 @@ pub fn reactions(text: &str, rows: usize, motions: usize, dim: usize) -> Result<
     ))
 }
 
-/// What a program says of itself.
+/// Account of a program of itself.
 #[derive(Debug, Default, PartialEq)]
 pub struct Said {
     /// Iterations as it counts them; 0 unless said.
     pub iterations: usize,
-    /// What it took by its own account [s].
+    /// Time by its own account [s].
     pub seconds: Option<f64>,
     /// Why it gave up.
     pub status: Option<Status>,

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::guard::Guarded;
 
-/// What a process says that an allocation ended: the runtimes of Rust, C++ and Python, and libraries that panic. Errors are
+/// Last words of a process that an allocation ended: the runtimes of Rust, C++ and Python, and libraries that panic. Errors are
 /// told by type, but a dead process left words only.
 const DENIED: [&str; 5] = [
     "memory allocation of",
@@ -61,7 +61,7 @@ pub struct Running<'a> {
     child: Child,
     folder: &'a mut Guarded,
     begin: Instant,
-    /// What it prints and complains: the files themselves, for their names may come to stand for a pipe.
+    /// Its output and complaints: the files themselves, for their names may come to stand for a pipe.
     streams: [File; 2],
 }
 

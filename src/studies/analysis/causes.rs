@@ -26,12 +26,12 @@ pub struct CauseRow {
     pub period: f64,
     /// Median of the iterations left, where it still falls.
     pub more: f64,
-    /// Of these runs, on problems of which several solutions are known.
+    /// Runs on problems of which several solutions are known.
     pub several: usize,
-    /// Of these runs, with a cure.
-    pub cured: usize,
-    /// The cure that worked most often.
-    pub cure: Option<String>,
+    /// Runs with a remedy.
+    pub remedied: usize,
+    /// The remedy that worked most often.
+    pub remedy: Option<String>,
     /// The problem with the fewest contact points: name, friction, points.
     pub example: (String, f64, usize),
 }
@@ -98,8 +98,8 @@ pub fn causes(records: &[Record]) -> Vec<CauseRow> {
             period: of(|own| own.diagnosis.period.map(|p| p as f64)),
             more: of(|own| own.diagnosis.more),
             several: runs.iter().filter(|(_, own)| own.solutions > 1).count(),
-            cured: runs.iter().filter(|(_, own)| own.cure.is_some()).count(),
-            cure: most_often(runs.iter().filter_map(|(_, own)| own.cure.as_deref())),
+            remedied: runs.iter().filter(|(_, own)| own.remedy.is_some()).count(),
+            remedy: most_often(runs.iter().filter_map(|(_, own)| own.remedy.as_deref())),
             example: (
                 smallest.asked.case.clone(),
                 smallest.asked.mu(),

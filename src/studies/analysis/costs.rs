@@ -1,4 +1,4 @@
-//! What a right answer costs, by problem and method: the time of the method, preparation and enforcement on all increments [s].
+//! Cost of a right answer, by problem and method: the time of the method, preparation and enforcement on all increments [s].
 
 use super::test_set::TestSet;
 use super::{is_correct, method_time, published_times};

@@ -126,7 +126,7 @@ pub fn sweeps(records: &[Record]) -> Vec<Sweep> {
     all
 }
 
-/// What the cells of a sweep share.
+/// Common data of the cells of a sweep.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     method: String,
@@ -145,9 +145,10 @@ fn others(choice: &Choice, option: &str) -> String {
     let list: Vec<String> = changed
         .map(|(spec, v)| format!("{}={v:e}", spec.name()))
         .collect();
-    match list.is_empty() {
-        true => choice.name().to_owned(),
-        false => format!("{}[{}]", choice.name(), list.join(",")),
+    if list.is_empty() {
+        choice.name().to_owned()
+    } else {
+        format!("{}[{}]", choice.name(), list.join(","))
     }
 }
 

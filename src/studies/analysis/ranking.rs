@@ -88,7 +88,7 @@ pub fn ranking<'a>(costs: &Costs<'a>) -> Option<Ranking<'a>> {
     })
 }
 
-/// What enters for one method on one problem.
+/// Contribution of one method on one problem.
 fn entered(row: &[Option<Cost>], index: usize) -> Cost {
     let right = row.iter().flatten().map(|cost| cost.value);
     let limit = || Cost::exactly(PENALTY * right.fold(0.0, f64::max));

@@ -40,7 +40,7 @@ pub struct Sample<'a> {
     pub share: f64,
 }
 
-/// What is measured of a sample.
+/// Measurements of a sample.
 pub type Quantity = fn(&Sample<'_>) -> f64;
 
 /// All samples, in the order of the methods and by size.
@@ -125,14 +125,13 @@ pub struct Growth {
     pub method: String,
     /// Bodies it was given, with the friction coefficient that most have.
     pub bodies: usize,
-    /// Of these, right at the finest tier.
+    /// Number right at the finest tier.
     pub correct: usize,
     /// Fewest and most contact unknowns of right answers.
     pub unknowns: [f64; 2],
     /// Exponents of time and iterations; NaN where they are not known.
     pub exponents: [f64; 2],
-    /// Largest number of contact points asked for with right answers, and there the median part of the method in the
-    /// whole run.
+    /// Largest number of contact points asked for with right answers, and there the median part of the method in the whole run.
     pub largest: (usize, f64),
 }
 

@@ -13,7 +13,7 @@ use super::{compare_methods, has_defaults, method_name, method_time, published_t
 use crate::studies::record::Record;
 use crate::studies::statistics::Timing;
 
-/// What changes along a curve.
+/// The parameter along a curve.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Swept {
     /// The tolerance asked for.
@@ -52,7 +52,7 @@ pub struct Series<'a> {
     pub label: String,
     /// Whether its limit are the contact laws.
     pub exact: bool,
-    /// What changes along it.
+    /// The parameter along it.
     pub swept: Swept,
     /// From coarse to fine tolerance, or by the value of the option.
     pub points: Vec<Point<'a>>,

@@ -67,9 +67,10 @@ impl SuccessRow {
     /// Rate of runs that gave what their method is for, with Wilson's 95 % interval: an exact one the contact laws, another one
     /// the laws it claims.
     pub fn kept(&self) -> [f64; 3] {
-        let kept = match self.exact {
-            true => self.correct,
-            false => self.claimed - self.failures[1],
+        let kept = if self.exact {
+            self.correct
+        } else {
+            self.claimed - self.failures[1]
         };
         wilson(kept, self.cells)
     }
@@ -80,7 +81,7 @@ impl SuccessRow {
     }
 }
 
-/// What stands between a class and the friction coefficient of its problems, where these have several.
+/// Separator of a class and the friction coefficient of its problems, where these have several.
 pub const BY_FRICTION: &str = " μ=";
 
 /// Rates of all methods at the three tiers, those with options too: on all problems, then on those of every class, and of every
@@ -95,9 +96,12 @@ pub fn success(records: &[Record]) -> Vec<SuccessRow> {
     let several = |record: &&Record| frictions[record.asked.case.as_str()].len() > 1;
     let swept = records.iter().filter(several).map(|r| r.class.as_str());
     let swept: BTreeSet<&str> = swept.filter(|class| !class.is_empty()).collect();
-    let class_of = |record: &Record| match swept.contains(record.class.as_str()) {
-        true => format!("{}{BY_FRICTION}{}", record.class, record.asked.mu()),
-        false => record.class.clone(),
+    let class_of = |record: &Record| {
+        if swept.contains(record.class.as_str()) {
+            format!("{}{BY_FRICTION}{}", record.class, record.asked.mu())
+        } else {
+            record.class.clone()
+        }
     };
     let mut groups: BTreeMap<(String, usize, &str), Vec<&Record>> = BTreeMap::new();
     for record in records {

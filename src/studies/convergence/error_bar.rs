@@ -65,7 +65,7 @@ impl Course<'_> {
         }
     }
 
-    /// What its changes are relative to.
+    /// Reference of its changes.
     fn size(&self) -> f64 {
         match (self.points.last(), self.kind()) {
             (Some([_, value]), Kind::Face) => value.abs(),

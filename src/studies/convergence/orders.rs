@@ -22,7 +22,7 @@ const RESOLVED: f64 = 1e-8;
 pub const ROUND_OFF: f64 = 1e-12;
 
 named! {
-    /// What an error is measured against.
+    /// Reference of an error.
     pub enum Kind {
         /// A closed form.
         Exact = "exact",
@@ -65,7 +65,7 @@ pub struct ErrorRow {
     /// Error, without closed form relative to [`Value::norm`](super::Value::norm) on the finest mesh; NaN on the mesh that
     /// is itself the reference.
     pub error: f64,
-    /// What the reference is; none where there is no error.
+    /// Kind of the reference; none where there is no error.
     pub kind: Option<Kind>,
     /// Order over this mesh and the two before; NaN where one of the three has no error above [`ROUND_OFF`], or without a
     /// closed form where they do not differ by more than the tolerance of the runs.
@@ -87,7 +87,7 @@ pub struct OrderRow {
     pub theory: Option<f64>,
     /// Dimension of the body: the unknowns grow like h^−dim.
     pub dim: usize,
-    /// What the founding paper prints for the case; none where it prints nothing.
+    /// Number that the founding paper prints for the case; none where it prints nothing.
     pub printed: Option<f64>,
 }
 
@@ -252,7 +252,7 @@ fn sequences<'a>(own: &[&'a Sample]) -> Vec<Vec<Point<'a>>> {
     all.into_values().collect()
 }
 
-/// What error bars are made of.
+/// The ingredients of error bars.
 fn course<'a>(points: &'a [Point<'_>]) -> Course<'a> {
     let finest = points.last();
     Course {
@@ -282,7 +282,7 @@ fn sequence(mut points: Vec<Point<'_>>, bar: Result<f64, NoBar>) -> (Vec<ErrorRo
     for (first, three) in places.windows(3).enumerate() {
         let own = &rows[first..first + 3];
         let order = match (value, three) {
-            // What the runs do not resolve has no order.
+            // Differences that the runs do not resolve have no order.
             (Some(value), &[a, b, c]) => {
                 let resolved =
                     |[_, v]: [f64; 2], [_, w]: [f64; 2]| (v - w).abs() > RESOLVED * value.norm;

@@ -31,8 +31,7 @@ pub fn order_of_steps([a, b, c]: [[f64; 2]; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Source: the definition of a power law. Goal: its order from meshes of one ratio; none of what goes to and fro or
-    /// away.
+    /// Source: the definition of a power law. Goal: its order from meshes of one ratio; none of what goes to and fro or away.
     #[test]
     fn the_order_of_a_power_law_is_that_of_its_steps() {
         for (c, p) in [(1.0, 0.5), (-2.0, 1.0), (0.3, 2.0), (5.0, 1.37)] {

@@ -1,4 +1,4 @@
-//! What one mesh of a sequence leaves behind.
+//! Measurements on one mesh of a sequence.
 
 use crate::case::Case;
 use crate::model::errors::Deviation;
@@ -7,7 +7,7 @@ use crate::studies::followed::Value;
 use crate::studies::record::{Record, Spent};
 use crate::studies::tips::{Regularity, label, regularity};
 
-/// What an honest run is measured by.
+/// Measure of an honest run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Measured {
     /// Nothing: the run has no honest verdict.
@@ -18,7 +18,7 @@ pub enum Measured {
     Values(Vec<Value>),
 }
 
-/// What the meshes of a sequence have in common.
+/// Common traits of the meshes of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variant {
     /// Case name.
@@ -38,7 +38,7 @@ pub struct Variant {
 pub struct Sample {
     /// Which sequence.
     pub variant: Variant,
-    /// What limits the order.
+    /// Limit of the order.
     pub regularity: Regularity,
     /// Mesh label.
     pub mesh: String,
@@ -58,7 +58,7 @@ pub struct Sample {
     /// condensation to the contact points; preparation of the method; all increments together. The first four are shared by
     /// all friction coefficients on a mesh. NaN unless the verdict is honest.
     pub seconds: [f64; 6],
-    /// What was found.
+    /// The findings.
     pub measured: Measured,
 }
 

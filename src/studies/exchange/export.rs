@@ -54,7 +54,7 @@ pub enum ExportError {
         increment: usize,
         /// Method.
         method: String,
-        /// What became of it.
+        /// Its fate.
         verdict: Verdict,
     },
 }

@@ -22,7 +22,7 @@ const MAX_NAME: usize = 200;
 /// Most rows of which the rank is found out: that takes as long as tens of factorisations.
 const MOST_RANKED: usize = 2000;
 
-/// What a collection says of the operator of a problem.
+/// Size of the operator of a problem of a collection.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OperatorSize {
     /// `local` or `global`.
@@ -80,13 +80,13 @@ pub enum ProblemFileError {
     System {
         /// Which file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault, in words.
         source: MethodError,
     },
 }
 
 impl ProblemFileError {
-    /// What is wrong, without the path: where it lies says nothing about a problem.
+    /// The fault without the path: where it lies says nothing about a problem.
     pub fn reason(&self, path: &Path) -> String {
         let quoted = format!("`{}`", path.display());
         let text = self.to_string();
@@ -222,7 +222,7 @@ fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// What forces are compared with: the known ones, or those that the free velocity would take.
+/// Reference of forces: the known ones, or those that the free velocity would take.
 fn force_scale(problem: &LocalProblem, known: &[f64]) -> f64 {
     let rows = problem.q.len();
     let trace: f64 = (0..rows).map(|k| problem.w.get(k, k)).sum();

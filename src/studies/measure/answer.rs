@@ -1,4 +1,4 @@
-//! What measuring a task gives.
+//! Results of measuring a task.
 
 use crate::case::Case;
 use crate::model::field_mesh::FieldStep;
@@ -10,7 +10,7 @@ use crate::studies::stress::energy::Found as Last;
 /// A record with what is too large for one.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// What is kept.
+    /// The part that is kept.
     pub record: Record,
     /// By increment, where curves were asked for: the violation by iteration.
     pub histories: Vec<Vec<f64>>,
@@ -18,7 +18,7 @@ pub struct Answer {
     pub points: Vec<Vec<PointState>>,
     /// By increment, where fields were asked for.
     pub fields: Vec<FieldStep>,
-    /// What tells answers at tier high apart, by increment.
+    /// Jumps that tell answers at tier high apart, by increment.
     pub jumps: Vec<Jump>,
     /// Reactions and local velocities of bare algebra.
     pub solution: Option<[Vec<f64>; 2]>,

@@ -45,7 +45,7 @@ pub enum MeasureError {
     /// The enrichment of tips.
     #[error("unknown tip enrichment `{0}`")]
     Tip(String),
-    /// What this one said before.
+    /// Earlier words of this one.
     #[error("{0}")]
     Before(Verdict),
     /// A view that means nothing for the case.
@@ -128,7 +128,7 @@ struct Kept {
     posed: Option<PerFriction>,
 }
 
-/// What is solved.
+/// The problem.
 enum Subject {
     Body(Box<Discretised>),
     Algebra(Box<(ProblemFile, OperatorSize)>),
@@ -161,16 +161,16 @@ pub struct Reference {
     pub snapshots: Vec<Snapshot>,
 }
 
-/// What was tried so far on one problem, by method; none where it did not converge.
+/// Attempts so far on one problem, by method; none where it did not converge.
 pub type References = BTreeMap<&'static str, Option<Reference>>;
 
-/// What is solved, with what acts on it.
+/// The problem, with the load on it.
 enum Setting<'a> {
     Body(&'a Discretised, Loading<'a>),
     Algebra(&'a ProblemFile, &'a OperatorSize),
 }
 
-/// What a task is solved on.
+/// The problem of a task.
 pub struct Scene<'a> {
     setting: Setting<'a>,
     /// The contact system with the friction of the task.
@@ -290,7 +290,7 @@ impl Kept {
     }
 }
 
-/// What a task asks of the body of a case. Whether normals alone are eliminated first is decided by all friction coefficients
+/// Demands of a task on the body of a case. Whether normals alone are eliminated first is decided by all friction coefficients
 /// of the case, so that neighbouring tasks share a body.
 fn needs(case: &Case, task: &Task) -> Needs {
     let own = case.cracks.iter().map(|crack| &crack.friction);
@@ -319,7 +319,7 @@ impl Subject {
         memory::reset_peak();
         let needs = needs(&case, task);
         let body = Body::new(&case, asked.refine, needs)?;
-        // What fails here fails in every method, whose verdict it is.
+        // A failure here is one of every method, whose verdict it is.
         let _told_by_methods = body.elastic.factorise();
         Ok(Self::Body(Box::new(Discretised {
             increments: case.path.increments,
@@ -485,6 +485,6 @@ pub fn warm_up(dim: usize) {
         run.follow(&mut |_| ());
         Some(())
     };
-    // What fails here fails in the run itself too, and is told there.
+    // A failure here is one of the run itself too, and is told there.
     once.call_once(|| _ = run());
 }

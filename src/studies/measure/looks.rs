@@ -1,4 +1,4 @@
-//! What is looked at along a load path, and afterwards at an increment that a method gave up.
+//! Looks along a load path, and afterwards at an increment that a method gave up.
 
 use std::time::Instant;
 
@@ -22,7 +22,7 @@ use crate::studies::why::{explain, stops};
 /// Contact points up to which runs that gave up are explained: solutions are looked for on a full W.
 const EXPLAINED: usize = 500;
 
-/// What is looked at on the way.
+/// Looks on the way.
 #[derive(Default)]
 pub(super) struct Seen {
     pub histories: Vec<Vec<f64>>,
@@ -120,11 +120,11 @@ pub(super) fn ask(
     if task.looks.stops && first {
         found.stops = stops(choice, solver, problem)?;
     }
-    let (verdict, cure) = (&moment.solved.verdict, task.looks.cure);
+    let (verdict, remedy) = (&moment.solved.verdict, task.looks.remedy);
     let gave_up = matches!(verdict, Verdict::GaveUp(_));
     if task.looks.why && gave_up && scene.system.points() <= EXPLAINED {
         let known = scene.answers(problem, first)?;
-        found.why = Some(explain(choice, solver, problem, verdict, &known, cure)?);
+        found.why = Some(explain(choice, solver, problem, verdict, &known, remedy)?);
     }
     Ok(())
 }
@@ -144,7 +144,7 @@ impl Scene<'_> {
 
     pub(super) fn size(&self, task: &Task) -> ProblemSize {
         let elastic = self.system.elastic();
-        // What fails here fails in every method, whose verdict it is.
+        // A failure here is one of every method, whose verdict it is.
         let margin = task.looks.why.then(|| contact_wise_margin(self.system));
         let unique = margin.and_then(Result::ok).map(|margin| margin > 0.0);
         let (mesh, space) = self.labels();

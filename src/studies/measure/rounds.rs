@@ -69,7 +69,7 @@ pub fn in_turn(
     runners.into_iter().map(Runner::times).collect()
 }
 
-/// What all methods follow.
+/// The path that all methods follow.
 struct Path<'a> {
     posed: Posed<'a>,
     rest: ContactState,

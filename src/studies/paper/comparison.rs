@@ -31,8 +31,7 @@ pub struct ComparisonRow {
     pub solve_s: f64,
 }
 
-/// The verdict farthest from `solved`; of equally far ones the first by name, so that the order of the runs does not
-/// matter.
+/// The verdict farthest from `solved`; of equally far ones the first by name, so that the order of the runs does not matter.
 fn worst<'a>(verdicts: impl Iterator<Item = &'a Verdict>) -> Option<&'a Verdict> {
     verdicts.max_by_key(|verdict| (verdict.rank(), Reverse(verdict.to_string())))
 }

@@ -4,8 +4,7 @@
 //! Body, crack and supports are those of Table 1. Star multipliers hold the faces between the crossed edges too, and branch
 //! functions within 1.5 m of the tips take the √r field at any cell width: more than the coarsest cell, 0.91 m, so that
 //! every mesh enriches several rings of nodes, and far from the other tip, 13.5 m, and the sides, 5.2 m. What is left are the
-//! corners of the plate, where a held side meets a free one, with stresses like r^(λ−1) and reactions that converge like
-//! h^2λ:
+//! corners of the plate, where a held side meets a free one, with stresses like r^(λ−1) and reactions that converge like h^2λ:
 //!
 //! ```text
 //!   sin²(λ π/2) = (4 (1 − ν)² − λ²) / (3 − 4ν)      plane strain, ν = 0.3: λ = 0.711, order 1.42

@@ -52,7 +52,7 @@ pub fn choice(name: &str, options: &[(String, f64)]) -> Result<Choice, PaperErro
     Choice::new(method, options).map_err(|e| PaperError::Missing(format!("{name}: {e}")))
 }
 
-/// What is compared: quantity, place, component.
+/// The quantity compared: quantity, place, component.
 pub type Compared = [&'static str; 3];
 
 /// Reaction of the plate at its top.

@@ -27,20 +27,20 @@ const STARTS: [(&str, bool); 2] = [("warm", false), ("cold", true)];
 /// Asks for something else to be looked at.
 type Look = fn(&mut Looks);
 
-/// What else may be looked at.
+/// Further looks that there are.
 const LOOKS: [(&str, Look); 2] = [
-    ("why", |looks| (looks.why, looks.cure) = (true, true)),
+    ("why", |looks| (looks.why, looks.remedy) = (true, true)),
     ("stops", |looks| looks.stops = true),
 ];
 
-/// What further blocks may still ask for.
-pub(super) struct Room {
+/// The rest that further blocks may still ask for.
+pub(super) struct Quota {
     tasks: usize,
     /// Programs so far, by label.
     programs: BTreeMap<String, String>,
 }
 
-impl Default for Room {
+impl Default for Quota {
     fn default() -> Self {
         Self {
             tasks: MAX_TASKS,
@@ -93,7 +93,7 @@ impl Given {
 pub(super) fn block(
     value: Value<'_>,
     folder: &Path,
-    room: &mut Room,
+    quota: &mut Quota,
 ) -> Result<Vec<Task>, CaseError> {
     let axes = ["refine", "contact", "friction", "increments", "start"];
     let others = ["methods", "options", "tolerances", "looks"];
@@ -101,7 +101,7 @@ pub(super) fn block(
     let table = value.table(&[&sources[..], &axes, &others].concat())?;
     let (source, asked) = table.exactly_one(&sources)?;
     let given = Given::read(&table)?;
-    let methods = named(&methods(&table, folder, &mut room.programs)?);
+    let methods = named(&methods(&table, folder, &mut quota.programs)?);
     let bounded =
         |v: Value<'_>| v.number_if("1e-14 <= tolerance < 1", |t| (1e-14..1.0).contains(&t));
     let tolerances = table.optional("tolerances", |v| entries(v, bounded))?;
@@ -136,11 +136,11 @@ pub(super) fn block(
         };
         let own = [axes.combinations(), methods.len(), accuracies.len()];
         let count = own.into_iter().fold(1, usize::saturating_mul);
-        let Some(rest) = room.tasks.checked_sub(count) else {
+        let Some(rest) = quota.tasks.checked_sub(count) else {
             let allowed = format!("at most {MAX_TASKS} cells in all blocks");
             return Err(value.refuse(allowed, "too many cells"));
         };
-        room.tasks = rest;
+        quota.tasks = rest;
         tasks.extend(problem.subject.tasks(&axes, &methods, &accuracies, looks));
     }
     Ok(tasks)

@@ -37,7 +37,7 @@ fn find(value: Value<'_>, folder: &Path) -> Result<Case, CaseError> {
         let allowed = format!("a file.toml, or one of {}", known.join(", "));
         return Err(value.refuse(allowed, "unknown case"));
     }
-    // What is wrong in the case stands there; that there is none is wrong here.
+    // A fault in the case stands there; that there is none is wrong here.
     case::read(folder.join(name)).map_err(|e| match e.line() {
         0 => value.refuse(e.allowed(), format_args!("{}: {}", e.message(), e.value())),
         _ => e,

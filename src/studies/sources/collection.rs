@@ -50,7 +50,7 @@ pub enum CollectionError {
     Contents {
         /// Which folder.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault, in words.
         what: String,
     },
 }
@@ -93,7 +93,7 @@ pub fn entries(named: &[PathBuf]) -> Result<Vec<Entry>, CollectionError> {
     Ok(all)
 }
 
-/// What is found below a folder.
+/// Files below a folder.
 #[derive(Default)]
 struct Walk {
     found: Vec<Entry>,
@@ -122,7 +122,7 @@ impl Walk {
             let ending = path.extension().and_then(|end| end.to_str());
             if item.file_type().map_err(unreadable)?.is_dir() {
                 if depth < MAX_DEPTH {
-                    // What ends a family elsewhere is a part of the name of a folder.
+                    // A sign that ends a family elsewhere is a part of the name of a folder.
                     let folder = own.replace(['-', '.'], "_");
                     self.add(&path, &format!("{prefix}{folder}."), depth + 1)?;
                 }

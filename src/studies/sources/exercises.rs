@@ -64,7 +64,7 @@ impl Exercise {
     }
 }
 
-/// What a point does.
+/// State of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum State {
     Open,

@@ -83,7 +83,7 @@ impl FileProblem {
 /// `files = ["collection", "problem.hdf5"]`.
 ///
 /// # Errors
-/// What cannot be listed or read.
+/// The first entry that cannot be listed or read.
 pub(crate) fn read(value: Value<'_>, folder: &Path) -> Result<Vec<Problem>, CaseError> {
     let named = entries(value, |v| Ok(folder.join(v.string()?)))?;
     let allowed = "files, and folders that hold some";

@@ -1,4 +1,4 @@
-//! What sources have in common: the problems that they yield, and lists of a sweep file.
+//! Common parts of sources: the problems that they yield, and lists of a sweep file.
 
 use crate::case::CaseError;
 use crate::case::reader::Value;

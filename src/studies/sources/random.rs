@@ -154,7 +154,7 @@ fn closes(body: &Body, load: &Acting) -> Result<bool, MethodError> {
     Ok(closed as f64 >= PRESSED * body.points.len() as f64)
 }
 
-/// What kind of bodies to draw.
+/// Kind of bodies to draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kind {
     /// 2 or 3.

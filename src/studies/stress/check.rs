@@ -23,17 +23,17 @@ const ROUNDING: f64 = 1e-9;
 /// than 1e-3 of a cell are held to this.
 const FLOOR: f64 = 1e-12;
 
-/// What the check says.
+/// Result of the check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Whether it is the closed form of uniform stress; else it is the energy.
     pub uniform: bool,
-    /// What is wrong, in words.
+    /// The fault, in words.
     pub faults: Vec<String>,
     /// Largest relative error.
     #[serde(with = "nan")]
     pub error: f64,
-    /// What is to be looked at, and no fault.
+    /// A matter to be looked at, and no fault.
     pub remark: String,
 }
 
@@ -117,7 +117,7 @@ impl Worst {
     }
 }
 
-/// What differs from the closed form, and the largest relative error.
+/// The quantity that differs from the closed form, and the largest relative error.
 fn compare(patch: &Patch, answer: Found<'_>) -> (Vec<String>, f64) {
     let exact = &patch.exact;
     let mut found: Vec<(&str, Worst)> = Vec::new();

@@ -10,7 +10,7 @@ const ENERGIES: [&str; 2] = ["strain_energy", "dissipation"];
 /// Part of the energy of a deformed body below which energy is rounding.
 const STILL: f64 = 1e-10;
 
-/// What was looked at: the end of one increment from rest.
+/// The state looked at: the end of one increment from rest.
 #[derive(Clone, Copy)]
 pub struct Found<'a> {
     /// Its quantities.
@@ -37,7 +37,7 @@ impl Found<'_> {
 pub struct Energies {
     /// Those of [`ENERGIES`].
     values: [f64; 2],
-    /// What a change of them is relative to.
+    /// Reference of a change of them.
     scale: f64,
 }
 

@@ -61,14 +61,14 @@ struct Open<'a> {
     scene: &'a Scene,
     case: Case,
     finding: Finding,
-    /// What was found, by severity.
+    /// Findings by severity.
     faults: Vec<(Fault, String)>,
     /// Tasks asked next, and their records.
     next: Vec<Task>,
     answers: Vec<Record>,
 }
 
-/// What became of some scenes, in their order; fewer where it was told to stop.
+/// Findings on some scenes, in their order; fewer where it was told to stop.
 ///
 /// # Errors
 /// [`LabError`].
@@ -207,7 +207,7 @@ impl<'a> Open<'a> {
         !is_done(record) && record.found.verdict != none && !refused
     }
 
-    /// What the runs of all methods say.
+    /// Verdict of the runs of all methods.
     fn judge(&mut self) {
         self.finding.records = std::mem::take(&mut self.answers);
         self.finding.fault = None;
@@ -221,9 +221,10 @@ impl<'a> Open<'a> {
             Verdict::Refused(reason) | Verdict::Crashed(reason) if found.problem.is_none() => {
                 let panic =
                     matches!(found.verdict, Verdict::Crashed(_)) && reason.contains("panic");
-                let own = match panic {
-                    true => Finding::ended(self.scene, Fault::Panic, reason),
-                    false => refused(self.scene, reason),
+                let own = if panic {
+                    Finding::ended(self.scene, Fault::Panic, reason)
+                } else {
+                    refused(self.scene, reason)
                 };
                 self.faults
                     .extend(own.fault.map(|fault| (fault, own.reason)));
@@ -274,9 +275,10 @@ impl<'a> Open<'a> {
         if let Some(check) = found.check.as_ref() {
             self.finding.reason = check.remark.clone();
             if !check.faults.is_empty() {
-                let fault = match check.uniform {
-                    true => Fault::WrongPatch,
-                    false => Fault::WrongEnergy,
+                let fault = if check.uniform {
+                    Fault::WrongPatch
+                } else {
+                    Fault::WrongEnergy
                 };
                 self.faults.push((fault, check.faults.join("; ")));
                 let look = Looks {
@@ -345,7 +347,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// What other ways to see the scene changed; asks for the error of the mesh where that matters.
+    /// Changes by other ways to see the scene; asks for the error of the mesh where that matters.
     fn judge_views(&mut self) {
         for record in std::mem::take(&mut self.answers) {
             let Some(view) = record.asked.view else {

@@ -1,4 +1,4 @@
-//! What became of a scene.
+//! Findings on a scene.
 
 use std::fmt;
 
@@ -82,7 +82,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// What seeing a scene another way changed.
+/// Change by seeing a scene another way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// Which way.
@@ -91,7 +91,7 @@ pub struct Seen {
     pub exact: bool,
     /// The verdict that it ends with.
     pub verdict: Verdict,
-    /// What changed; none where that is not `solved`.
+    /// The change; none where that is not `solved`.
     pub change: Option<Change>,
 }
 

@@ -1,7 +1,7 @@
 //! Ladders: one parameter at a time of a body in uniform compression whose cracks stick, through its decades: where these lie, what
 //! they are measured in.
 //!
-//! Random scenes say how often something breaks; a ladder says where it begins to. A rung is a scene like any other.
+//! Random scenes say how often something breaks; a ladder says where it begins to. A step is a scene like any other.
 
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -13,12 +13,12 @@ use super::uniform::sides;
 pub struct Ladder {
     /// Name in tables.
     pub name: String,
-    /// What changes, with its unit.
+    /// The parameter that changes, with its unit.
     pub parameter: String,
     /// Space dimension.
     pub dim: usize,
     /// Values and cases.
-    rungs: Vec<(f64, String)>,
+    steps: Vec<(f64, String)>,
 }
 
 impl Ladder {
@@ -33,7 +33,7 @@ impl Ladder {
             name: name.into(),
             parameter: parameter.into(),
             dim,
-            rungs: values.into_iter().map(|v| (v, text(v))).collect(),
+            steps: values.into_iter().map(|v| (v, text(v))).collect(),
         }
     }
 }
@@ -51,21 +51,21 @@ pub fn ladders() -> &'static [Ladder] {
     &LADDERS
 }
 
-/// Number of rungs of all ladders.
+/// Number of steps of all ladders.
 pub fn count() -> u64 {
-    LADDERS.iter().map(|own| own.rungs.len() as u64).sum()
+    LADDERS.iter().map(|own| own.steps.len() as u64).sum()
 }
 
-/// The ladder of a rung with a number below [`count`], the value of its parameter there, and its case; of a number beyond the last
+/// The ladder of a step with a number below [`count`], the value of its parameter there, and its case; of a number beyond the last
 /// one that.
-pub fn rung(number: u64) -> (&'static Ladder, f64, &'static str) {
+pub fn step(number: u64) -> (&'static Ladder, f64, &'static str) {
     let all = LADDERS
         .iter()
-        .flat_map(|own| own.rungs.iter().map(move |rung| (own, rung)));
+        .flat_map(|own| own.steps.iter().map(move |step| (own, step)));
     let last = (count() - 1).min(number) as usize;
     let own = all
         .skip(last)
-        .map(|(own, rung)| (own, rung.0, rung.1.as_str()));
+        .map(|(own, step)| (own, step.0, step.1.as_str()));
     own.into_iter()
         .next()
         .unwrap_or((&LADDERS[0], f64::NAN, ""))

@@ -116,9 +116,9 @@ pub struct Scene {
     pub beyond: bool,
 }
 
-/// The rung of a ladder, by its number.
-fn rung(number: u64) -> Scene {
-    let (ladder, _, text) = places::rung(number);
+/// The step of a ladder, by its number.
+fn step(number: u64) -> Scene {
+    let (ladder, _, text) = places::step(number);
     Scene {
         family: Family::Ladder,
         number,
@@ -136,7 +136,7 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
         Family::Patch3d => (3, true),
         Family::Slip2d => (2, false),
         Family::Slip3d => (3, false),
-        Family::Ladder => return rung(number),
+        Family::Ladder => return step(number),
     };
     let s = &mut Stream::numbered(seed, 2 * number + dim as u64 % 2);
     let kinds = if dim == 2 { flat::KINDS } else { solid::KINDS };
@@ -175,7 +175,7 @@ pub fn scene(family: Family, seed: u64, number: u64) -> Scene {
             .map(Shape::Solid)
             .collect()
     };
-    // What the other family draws more leaves these as they are.
+    // Further draws of the other family leave these as they are.
     let mut own = Stream::numbered(seed ^ 0x5eed, number);
     let mut beyond = match &cracks[..] {
         [Shape::Flat(one), Shape::Flat(two)] => {

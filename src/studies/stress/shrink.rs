@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use super::uniform::{lines, number, set_lines};
 
-/// What a case could be made to, the largest steps first. In uniform stress cracks must stick: friction and the ratio of the
+/// Smaller cases that a case could be made to, the largest steps first. In uniform stress cracks must stick: friction and the ratio of the
 /// stresses are left alone.
 pub fn smaller(text: &str) -> Vec<String> {
     let Ok(case) = text.parse::<Table>() else {

@@ -31,7 +31,7 @@ pub struct Suite {
     pub shard: Shard,
 }
 
-/// What became of all scenes of a suite, in order; fewer where it was told to stop.
+/// Findings on all scenes of a suite, in order; fewer where it was told to stop.
 ///
 /// # Errors
 /// [`LabError`].
@@ -64,7 +64,7 @@ struct Small {
     place: usize,
     fault: Fault,
     best: Scene,
-    /// What the best one could be made to next.
+    /// Next steps from the best one.
     next: VecDeque<String>,
     left: usize,
 }
@@ -99,7 +99,7 @@ fn shrink(
             });
         }
     }
-    // Whose fault is that of the default method alone is tried by it alone.
+    // A scene whose fault is that of the default method alone is tried by it alone.
     let all = [
         Fault::FalseClaim,
         Fault::NotInvariant,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::find::INVARIANT;
 use super::finding::{Fault, Finding, Seen};
-use super::places::{Ladder, ladders, rung};
+use super::places::{Ladder, ladders, step};
 use super::scene::Family;
 use crate::run::verdict::Verdict;
 use crate::studies::record::Record;
@@ -22,7 +22,7 @@ pub struct FaultRow {
     pub share: f64,
     /// Their numbers; none of right ones.
     pub numbers: Vec<u64>,
-    /// What is wrong with the first.
+    /// Fault of the first.
     pub reason: String,
     /// Largest error of the default method [-].
     pub error: f64,
@@ -41,9 +41,9 @@ pub struct InvarianceRow {
     pub exact: bool,
     /// Scenes it was tried on.
     pub scenes: usize,
-    /// Of these, those whose contact points stayed where they were.
+    /// Scenes whose contact points stayed where they were.
     pub same: usize,
-    /// Of these, those that kept at least nine digits.
+    /// Scenes that kept at least nine digits.
     pub kept: usize,
     /// Digits that half of the scenes with the same points kept at least.
     pub median: f64,
@@ -60,12 +60,12 @@ pub struct InvarianceRow {
 pub struct LadderRow {
     /// Name of the ladder.
     pub ladder: String,
-    /// What changes, with its unit.
+    /// The parameter that changes, with its unit.
     pub parameter: String,
     /// Least and largest value.
     pub range: [f64; 2],
     /// Values tried.
-    pub rungs: usize,
+    pub steps: usize,
     /// Values at which the answer was right.
     pub right: usize,
     /// The others: values and faults.
@@ -174,7 +174,7 @@ pub fn of_ladders(findings: &[Finding]) -> Vec<LadderRow> {
     let row = |ladder: &Ladder| {
         let all = findings.iter().filter(|f| f.scene.family == Family::Ladder);
         let own = all.filter(|f| f.scene.category == ladder.name);
-        let own: Vec<(f64, &Finding)> = own.map(|f| (rung(f.scene.number).1, f)).collect();
+        let own: Vec<(f64, &Finding)> = own.map(|f| (step(f.scene.number).1, f)).collect();
         let others = own.iter();
         let others = others.filter_map(|(v, f)| Some(format!("at {v:e}: {}", f.fault?)));
         let right: Vec<&Finding> = (own.iter().map(|own| own.1))
@@ -188,7 +188,7 @@ pub fn of_ladders(findings: &[Finding]) -> Vec<LadderRow> {
             ladder: ladder.name.clone(),
             parameter: ladder.parameter.clone(),
             range: [values().reduce(f64::min)?, values().reduce(f64::max)?],
-            rungs: own.len(),
+            steps: own.len(),
             right: right.len(),
             others: others.collect::<Vec<_>>().join("; "),
             error: errors.fold(0.0, f64::max),

@@ -111,8 +111,7 @@ impl Transform {
 
     /// Whether every number of the case is what it was, or a power of two times that. The others round coordinates, of which
     /// a crack 1e-14 of a cell beside a node keeps little, or give sides, faces and axes other names: the program may then
-    /// choose other contact points, or the other of two cells that share a tip, and the answer change by the error of the
-    /// mesh.
+    /// choose other contact points, or the other of two cells that share a tip, and the answer change by the error of the mesh.
     pub fn is_exact(&self) -> bool {
         match self {
             Self::Length(factor) | Self::Stress(factor) => factor.log2().fract() == 0.0,
@@ -120,12 +119,12 @@ impl Transform {
         }
     }
 
-    /// What energies are multiplied with; in 2D they are per length.
+    /// Factor of energies; in 2D they are per length.
     pub fn energy(&self, dim: usize) -> f64 {
         self.force(dim) * self.length()
     }
 
-    /// What contact forces are multiplied with; in 2D they are per length.
+    /// Factor of contact forces; in 2D they are per length.
     pub fn force(&self, dim: usize) -> f64 {
         match self {
             Self::Length(factor) => factor.powi(dim as i32 - 1),
@@ -134,7 +133,7 @@ impl Transform {
         }
     }
 
-    /// What lengths are multiplied with.
+    /// Factor of lengths.
     pub fn length(&self) -> f64 {
         match self {
             Self::Length(factor) => *factor,
@@ -287,7 +286,7 @@ impl Map {
         }
     }
 
-    /// What a side is called afterwards.
+    /// New name of a side.
     fn named(&self, name: &str, dim: usize) -> Option<&'static str> {
         let sides = sides(dim);
         let axis = sides.iter().position(|pair| pair.contains(&name))?;

@@ -1,4 +1,4 @@
-//! What a transformation changes: a case is solved as it is and changed, and forces and energies are compared.
+//! Effect of a transformation: a case is solved as it is and changed, and forces and energies are compared.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::transform::Transform;
 use crate::case::Case;
 use crate::model::quantities::PointState;
 
-/// What a transformation changed.
+/// Change by a transformation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// Largest change of contact forces, over the largest force [-]; none where the contact points are others.
@@ -33,8 +33,7 @@ pub fn change(
     }
 }
 
-/// Largest change of pressure and shear over the contact points, over the largest force; none where the points are
-/// others.
+/// Largest change of pressure and shear over the contact points, over the largest force; none where the points are others.
 fn force(
     transform: &Transform,
     case: &Case,

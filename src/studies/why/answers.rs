@@ -30,7 +30,7 @@ const HOLDS: f64 = 1e-9;
 /// Answers whose forces and jumps both differ by more, relative to the largest, are two.
 const DIFFERENT: f64 = 1e-6;
 
-/// What proves that there is no solution.
+/// The proof that there is no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Proof {
     /// No contact force within the cones of friction balances the load, see [`no_equilibrium`].
@@ -39,7 +39,7 @@ pub enum Proof {
     Enumeration(usize),
 }
 
-/// What is known of an increment.
+/// Facts about an increment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answers {
     /// Different solutions known.
@@ -106,7 +106,7 @@ impl Answers {
     }
 }
 
-/// What the methods end with, right or wrong.
+/// Ends of the methods, right or wrong.
 fn asked(increment: &Increment<'_>) -> Result<Vec<ContactState>, MethodError> {
     let posed = Increment {
         tolerance: TOLERANCE,

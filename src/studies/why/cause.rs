@@ -87,7 +87,7 @@ causes! {
 }
 
 impl Cause {
-    /// What to change.
+    /// The change to make.
     pub fn advice(self) -> &'static str {
         match self {
             Self::NoSolution => "no method can: other loads, supports or friction",
@@ -113,7 +113,7 @@ impl std::fmt::Display for Cause {
     }
 }
 
-/// What a cause is decided from.
+/// Observations that a cause is decided from.
 pub struct Evidence<'a> {
     /// How the run ended.
     pub verdict: &'a Verdict,
@@ -123,7 +123,7 @@ pub struct Evidence<'a> {
     pub tolerance: f64,
     /// The method's own limit of iterations, if it has one.
     pub limit: Option<f64>,
-    /// What its iterates did.
+    /// Course of its iterates.
     pub watch: &'a Watch<'a>,
     /// Solutions of the problem.
     pub answers: &'a Answers,
@@ -138,7 +138,7 @@ pub struct Diagnosis {
     pub period: Option<usize>,
     /// Points that change their state within a cycle, from 0.
     pub flips: Vec<usize>,
-    /// What the cause is decided by, see [`Cause`].
+    /// Measure that decides the cause, see [`Cause`].
     #[serde(with = "nan")]
     pub measure: f64,
     /// Factor by which an iteration reduces the violation, where it still falls; of an approximate method that by which the
@@ -318,9 +318,12 @@ fn wandering(watch: &Watch<'_>) -> Option<Vec<usize>> {
 /// at half of what is asked for.
 fn falling(e: &Evidence<'_>) -> Option<(f64, f64)> {
     let seen = e.watch.seen();
-    let of = |k: usize| match e.exact {
-        true => seen[k].violation,
-        false => seen[k].force_change,
+    let of = |k: usize| {
+        if e.exact {
+            seen[k].violation
+        } else {
+            seen[k].force_change
+        }
     };
     let from = (seen.len() / 2).min(seen.len().checked_sub(LEAST)?);
     let points: Vec<(f64, f64)> = (from..seen.len())

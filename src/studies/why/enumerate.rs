@@ -13,20 +13,20 @@ use stickslip_methods::Gauge;
 /// Points with which all 4ⁿ combinations are tried: 65 536.
 pub const POINTS: usize = 8;
 
-/// What counts as fulfilled, relative to the size of the forces: on the side of a solution.
+/// Bound that counts as fulfilled, relative to the size of the forces: on the side of a solution.
 const SLACK: f64 = 1e-9;
 
 /// Forces beyond this multiple of ρ |q| come of a matrix that is singular to rounding.
 const UNBOUNDED: f64 = 1e10;
 
-/// What was found.
+/// The findings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Enumeration {
     /// Contact forces of every solution, rows in use, no two of them alike.
     pub solutions: Vec<Vec<f64>>,
     /// Combinations tried.
     pub pieces: usize,
-    /// Of these, with a singular matrix.
+    /// Number with a singular matrix.
     pub undecided: usize,
 }
 

@@ -10,7 +10,7 @@ use super::watch::Seen;
 /// Tolerance of tests that compare real numbers, and of the violation they are held to: tier `mid`.
 const TOLERANCE: f64 = 1e-6;
 
-/// What a test on states alone is held to: tier `high`. It claims that the last linear problem was the solution.
+/// Violation that a test on states alone is held to: tier `high`. It claims that the last linear problem was the solution.
 const FINITE: f64 = 1e-9;
 
 /// A stopping test.
@@ -22,7 +22,7 @@ pub struct Criterion {
     pub source: &'static str,
     /// Methods it belongs to; empty: all.
     pub methods: &'static [&'static str],
-    /// What it compares.
+    /// The comparison it makes.
     measure: fn(&Seen) -> f64,
     /// At most this stops.
     bound: f64,
@@ -82,7 +82,7 @@ pub const CRITERIA: [Criterion; 6] = [
     },
 ];
 
-/// What one test would have done in one run.
+/// Course of one test in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Name of the test.

@@ -1,4 +1,4 @@
-//! What the iterates of a method do: their states, what they violate, how far they move.
+//! Course of the iterates of a method: their states, what they violate, how far they move.
 //!
 //! States are those of the trial z = P − ρ v, as the return mapping reads them, whatever the method's own scale: open
 //! z_n <= 0, stick |z_t| <= μ z_n, slip otherwise, with its direction.

@@ -17,7 +17,7 @@ pub const DISTANCES: [f64; 27] = [
     -1e-11, -1e-10, -1e-9, -1e-8, -1e-7, -1e-6, -1e-5, -1e-4, -1e-3, -1e-2, -1e-1, -3e-1,
 ];
 
-/// What the crack does.
+/// Course of the crack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
     /// Closed under hydrostatic pressure, without friction.
@@ -32,7 +32,7 @@ pub enum State {
     Held,
 }
 
-/// What the boundary is given.
+/// Conditions on the boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Loaded {
     /// Displacements on all sides: the crack leaves through held sides.
@@ -43,7 +43,7 @@ pub enum Loaded {
 
 /// A patch test.
 pub struct Patch {
-    /// What the crack does.
+    /// Course of the crack.
     pub state: State,
     /// Shape and direction of the crack.
     pub crack: String,

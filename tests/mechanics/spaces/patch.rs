@@ -33,7 +33,7 @@ const PASSED: f64 = 1e-10;
 /// One patch test in one contact space.
 #[derive(Debug)]
 pub struct PatchRow {
-    /// What the crack does.
+    /// Course of the crack.
     pub state: State,
     /// Shape and direction of the crack.
     pub crack: String,

@@ -5,7 +5,7 @@ use stickslip::files::interchange::Problem;
 
 use super::{W, read_bytes};
 
-/// What a test file stores; every test changes one thing.
+/// Contents of a test file; every test changes one thing.
 pub struct Raw {
     pub integers: Vec<(&'static str, Vec<i32>)>,
     pub reals: Vec<(&'static str, Vec<f64>)>,

@@ -3,7 +3,7 @@
 use prop::sample::{Index, select};
 use proptest::prelude::*;
 
-/// What readers of texts stumble over: numbers at their limits, signs of the format, characters without a width.
+/// Stumbling blocks of readers of texts: numbers at their limits, signs of the format, characters without a width.
 #[rustfmt::skip]
 const WORDS: [&str; 38] = [
     "nan", "-inf", "1e309", "1e-400", "-0", "0", "-1", "0.5", "1e25", "4294967296", "9223372036854775808",

@@ -40,7 +40,7 @@ pub fn edge_pairs(
         let weights = vertex_weights(&facets.polygon(facet));
         let carried = |corner: &usize| points[*corner].is_some();
         let kept = facet.corners.iter().filter(|c| carried(c)).count();
-        // What belongs to a corner without a point is carried by the others of its facet.
+        // The share of a corner without a point is carried by the others of its facet.
         let lost: f64 = facet
             .corners
             .iter()

@@ -12,7 +12,7 @@ use crate::stiffness::cell_matrix::CellIntegrator;
 
 use super::pairs::AT_TIP;
 
-/// What the displacement does at a crossed mesh edge or node.
+/// Displacement at a crossed mesh edge or node.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
     /// Numbers of the jumps of the edge's ends that are free here; at a node the second is `None`. The same number stands for
@@ -127,7 +127,7 @@ impl<'a> FreeJumps<'a> {
         jumping.any(|f| self.free.contains(&f)).then_some(copies)
     }
 
-    /// What happens at every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
+    /// Role of every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
         let mesh = self.integrator.mesh;
         let Enrichment { tips, sizes, .. } = self.integrator.enrichment;

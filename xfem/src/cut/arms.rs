@@ -277,7 +277,7 @@ impl Places {
         });
         for (crack, s) in cracks.into_iter().zip(s) {
             let cuts = &mut self.cuts[crack];
-            // What crosses beside its own end ends there.
+            // An arm that crosses beside its own end ends there.
             if !cuts
                 .iter()
                 .any(|c| (c.s - s).abs() <= FOLLOWED * self.size && c.x == x)
@@ -341,7 +341,7 @@ fn is_closed(crack: &Crack) -> bool {
 fn crossings(one: &Crack, two: &Crack, beyond: f64) -> Vec<[PathVertex; 2]> {
     /// Segments more parallel than this, as sine of their angle, do not cross.
     const PARALLEL: f64 = 1e-9;
-    /// What two neighbouring segments may leave open between them, in their length.
+    /// Gap that two neighbouring segments may leave open between them, in their length.
     const GAP: f64 = 1e-12;
     let reach = |crack: &Crack, i: usize, length: f64| {
         let at_end = |end: bool| {

@@ -32,7 +32,7 @@ pub const ON_CRACK: f64 = 1e-12;
 /// To a support a node closer than this to a crack lies on it, in shortest edges of the mesh: cracks off facets pass that close.
 pub const HAIR: f64 = 1e-8;
 
-/// What is closer than this to a crack lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
+/// Distance from a crack below which a place lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
 pub fn on_crack(size: f64, rounding: f64) -> f64 {
     (ON_CRACK * size).max(rounding)
 }
@@ -66,7 +66,7 @@ pub enum Geometry {
     Ellipse(Ellipse),
 }
 
-/// What a 2D arm ends in.
+/// End of a 2D arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The crack's own end: a tip, if it lies inside the body.
@@ -104,7 +104,7 @@ pub struct Crack {
     pub geometry: Geometry,
     /// First and last abscissa of a 2D arm [m]; infinite in 3D.
     pub range: [f64; 2],
-    /// What lies at the first and last abscissa.
+    /// Ends at the first and last abscissa.
     pub ends: [End; 2],
     /// 2D: the polyline through the cells, from the first to the last abscissa; an arc is a chain of chords.
     pub path: Vec<PathVertex>,
@@ -139,7 +139,7 @@ impl Crack {
 
     /// Whether the functions of a tip with the given frame jump over this arm; `own`: the arm that ends there.
     pub fn jumps_with(&self, frame: &TipFrame, own: &Crack) -> bool {
-        /// What is this close to the line of a tip lies on it, in parts of the arm.
+        /// Distance from the line of a tip below which a place lies on it, in parts of the arm.
         const ON_LINE: f64 = 1e-9;
         let slack = ON_LINE * (self.range[1] - self.range[0]);
         let behind = |v: &PathVertex| {
@@ -287,9 +287,10 @@ impl Crack {
 
     /// Side of a node: +1 on side 1 and on the crack, −1 on side 2.
     pub fn side_of(&self, mesh: &Mesh, node: usize) -> Side {
-        match self.phi(mesh, node as u32) >= 0.0 {
-            true => 1.0,
-            false => -1.0,
+        if self.phi(mesh, node as u32) >= 0.0 {
+            1.0
+        } else {
+            -1.0
         }
     }
 

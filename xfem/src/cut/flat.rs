@@ -68,9 +68,12 @@ pub fn divide(
         while division.insert(&mut pending)? || division.join(arms, &mut pending) {}
         // Free ends one by one: others may wait for their chains.
         let short = |chain: &Pending| chain.length() <= SHORT * division.size;
-        let leads = |chain: &Pending| match chain.loose {
-            true => chain.vertices.len() == 2,
-            false => chain.free && division.is_corner(chain.first()),
+        let leads = |chain: &Pending| {
+            if chain.loose {
+                chain.vertices.len() == 2
+            } else {
+                chain.free && division.is_corner(chain.first())
+            }
         };
         let next = pending
             .iter()

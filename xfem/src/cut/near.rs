@@ -92,7 +92,7 @@ impl<'a> Near<'a> {
         one.iter().copied().filter(|c| two.contains(c)).collect()
     }
 
-    /// What is closer than this to a node lies on it [m].
+    /// Distance from a node below which a place lies on it [m].
     pub fn tolerance(&self, node: u32) -> f64 {
         on_crack(self.sizes[&node], self.rounding)
     }

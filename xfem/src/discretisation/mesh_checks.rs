@@ -39,7 +39,7 @@ const STEPS: f64 = 4.0;
 /// by 1e-9 to 1e-7 above 1e8.
 const SWAY: f64 = 1e7;
 
-/// What the tests on a body found.
+/// Findings of the tests on a body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshChecks {
     /// Residual of uniform stress [-].
@@ -53,7 +53,7 @@ pub struct MeshChecks {
 }
 
 impl MeshChecks {
-    /// What is wrong with the mesh, if anything is.
+    /// Fault of the mesh, if there is one.
     pub fn reason(&self) -> Option<String> {
         // NaN passes no comparison.
         let exact = self.uniform <= UNIFORM.max(self.rounding);
@@ -72,7 +72,7 @@ impl MeshChecks {
     }
 }
 
-/// What is wrong with a body whose slender parts sway so far, if anything is.
+/// Fault of a body whose slender parts sway so far, if there is one.
 pub fn swaying(sway: f64) -> Option<String> {
     let digits = -(f64::EPSILON * sway).log10();
     (sway > SWAY).then(|| {

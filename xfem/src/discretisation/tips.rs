@@ -93,7 +93,7 @@ pub struct TipIntensities {
     pub jumps: Vec<[f64; 3]>,
     /// By the interaction integral over the domains that stand alone around the tip, the preferred one first; none in 3D.
     pub integrals: Vec<[f64; 2]>,
-    /// What the smallest domain reaches, where none stands alone.
+    /// Obstacle of the smallest domain, where none stands alone.
     pub obstacle: Option<Obstacle>,
 }
 
@@ -123,7 +123,7 @@ impl TipIntensities {
     }
 }
 
-/// What acts beside the displacement, for the interaction integral.
+/// Loads beside the displacement, for the interaction integral.
 pub struct Loads<'a> {
     /// Force per volume at a point and side [N/m³].
     pub body_force: &'a (dyn Fn(&Point, Option<f64>) -> Point + Sync),

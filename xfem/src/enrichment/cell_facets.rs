@@ -128,9 +128,12 @@ pub fn region_at(cracks: &[Crack], partition: &Partition, x: &Point) -> Region {
         .enumerate()
         .filter(|(_, part)| !part.polygon.is_empty());
     let nearest = flat.min_by(|(_, a), (_, b)| {
-        let away = |part: &Part| match contains(&part.polygon, x) {
-            true => -border_distance(&part.polygon, x),
-            false => border_distance(&part.polygon, x),
+        let away = |part: &Part| {
+            if contains(&part.polygon, x) {
+                -border_distance(&part.polygon, x)
+            } else {
+                border_distance(&part.polygon, x)
+            }
         };
         away(a).total_cmp(&away(b))
     });

@@ -5,7 +5,7 @@ use crate::cut::off_facets::AlongFacet;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
 
-/// What is wrong with a crack in a mesh; crack numbers are from 0.
+/// Fault of a crack in a mesh; crack numbers are from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EnrichmentError {
     /// The crack cuts no cell.
@@ -39,7 +39,7 @@ pub enum EnrichmentError {
     Partition {
         /// Crack number, from 0.
         crack: usize,
-        /// What is wrong.
+        /// The fault, in words.
         reason: PartitionError,
         /// Centre of the cell [m].
         at: Point,

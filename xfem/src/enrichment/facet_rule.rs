@@ -129,9 +129,12 @@ fn segment_points(ends: &[Point; 2], integrand: Integrand) -> Vec<FacetPoint> {
 
 /// Points of a convex polygon in space.
 fn polygon_points(polygon: &[Point], affine: bool) -> Vec<FacetPoint> {
-    fan_points(polygon, |t| match affine {
-        true => triangle(t),
-        false => triangle_collapsed(t, 6),
+    fan_points(polygon, |t| {
+        if affine {
+            triangle(t)
+        } else {
+            triangle_collapsed(t, 6)
+        }
     })
 }
 

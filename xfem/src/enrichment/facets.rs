@@ -35,7 +35,7 @@ pub struct Facet {
     pub regions: [Region; 2],
     /// Frame n, a, b of the piece itself: a bent 2D crack is a chain of chords.
     pub frame: [Point; 3],
-    /// What a 3D front cut the piece from.
+    /// The cell that a 3D front cut the piece from.
     pub front: Option<FrontCut>,
 }
 
@@ -95,7 +95,7 @@ impl CrackFacets {
             };
             let nodes = mesh.cell(cell);
             let map = mesh.map(cell);
-            // What is cut off or merged by it is missing from the crack, and so from the forces on it.
+            // A part that is cut off or merged by it is missing from the crack, and so from the forces on it.
             let tolerance = 1e-12 * norm(&sub(&map[0], &map[2]));
             // Corners inside the cell that its own faces share.
             let mut inner: Vec<usize> = Vec::new();

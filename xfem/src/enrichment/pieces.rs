@@ -237,9 +237,12 @@ fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<V
     let kinds = dim + rotations.len();
     let all = (0..pieces.count).flat_map(|piece| (0..kinds).map(move |kind| (piece, kind)));
     all.map(|(piece, kind)| {
-        pieces.field(mesh, enrichment, |p, x| match p == piece {
-            true => motion(kind, x),
-            false => [0.0; 3],
+        pieces.field(mesh, enrichment, |p, x| {
+            if p == piece {
+                motion(kind, x)
+            } else {
+                [0.0; 3]
+            }
         })
     })
     .collect()

@@ -84,7 +84,7 @@ pub fn support_pieces(
     found
 }
 
-/// What of some cells a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
+/// Parts of some cells that a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
 /// than some arms.
 pub fn parted_from(
     mesh: &Mesh,
@@ -153,7 +153,7 @@ fn key(nodes: impl Iterator<Item = u32>) -> FacetKey {
     [0, 1, 2, 3].map(|i| nodes[i.min(nodes.len() - 1)])
 }
 
-/// What tells which regions are joined.
+/// The rule that tells which regions are joined.
 struct Joiner<'a> {
     mesh: &'a Mesh,
     cracks: &'a [Crack],
@@ -296,9 +296,10 @@ impl Joiner<'_> {
             Some(partition) => {
                 let part = &partition.parts[region];
                 let mut corners = part.polygon.iter().chain(part.tetrahedra.iter().flatten());
-                match self.beside.contains_key(&node) {
-                    true => corners.any(|c| norm(&sub(c, x)) <= HAIR * size),
-                    false => corners.any(|c| c == x),
+                if self.beside.contains_key(&node) {
+                    corners.any(|c| norm(&sub(c, x)) <= HAIR * size)
+                } else {
+                    corners.any(|c| c == x)
                 }
             }
         };

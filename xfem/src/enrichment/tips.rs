@@ -290,7 +290,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What the cells left whole would look like with their cracks up to the ends.
+    /// Shape of the cells left whole with their cracks up to the ends.
     fn endings(&self) -> BTreeMap<usize, Partition> {
         let whole = self.trace.chains.iter().filter(|(cell, chains)| {
             !self.partitions.contains_key(cell) && chains.iter().any(|c| c.tip != [false; 2])

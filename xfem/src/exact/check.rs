@@ -182,7 +182,7 @@ fn check_intensity(field: &dyn Field, of: &Setting<'_>) {
         let found = field.intensity(&tip).unwrap();
         let root = (2.0 * std::f64::consts::PI * rho).sqrt();
         for (k, stress) in found.iter().zip([dot(&n, &on_n), dot(&ahead, &on_n)]) {
-            // What is left is √ρ times the stress that is not singular, at most of order one in all tests.
+            // The rest is √ρ times the stress that is not singular, at most of order one in all tests.
             let limit = root * stress;
             assert!((k - limit).abs() < 3.0 * root, "{k} {limit}");
         }

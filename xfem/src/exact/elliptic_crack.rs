@@ -103,7 +103,7 @@ impl EllipticCrack {
             material: self.material,
             stress,
             jump: [slip_a, slip_b, c[2] * tension.max(0.0)],
-            // What the drop D/C leaves of the remote shear; force on side 1 is −σ n.
+            // The remote shear less the drop D/C; force on side 1 is −σ n.
             traction: [slip_a / c[0] - tau_a, slip_b / c[1] - tau_b, pressure],
             dissipation: 0.0,
         }

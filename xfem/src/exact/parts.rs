@@ -1,4 +1,4 @@
-//! What closed forms are built from: frames, constants, potentials, springs.
+//! Parts of closed forms: frames, constants, potentials, springs.
 
 pub mod contact_zone;
 pub mod crack_field;

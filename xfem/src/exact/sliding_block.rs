@@ -13,8 +13,7 @@
 //! ```
 //!
 //! So the block is a friction spring ([`FrictionSpring`]) with force s₁ − q and slip s sin θ. While it slips s₁ and with it the
-//! traction do not change, so the state does not depend on the number of increments. The lateral pressure acts from the
-//! start.
+//! traction do not change, so the state does not depend on the number of increments. The lateral pressure acts from the start.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,10 +1,10 @@
-//! What a closed form is: the setting it is built for, its states along a load path, the fields of a state.
+//! Parts of a closed form: the setting it is built for, its states along a load path, the fields of a state.
 
 use crate::geometry::Point;
 use crate::geometry::crack_shape::CrackShape;
 use crate::material::{Lame, Material, Model};
 
-/// What a case says about the body a solution lives in.
+/// Words of a case about the body a solution lives in.
 #[derive(Debug, Clone)]
 pub struct Setting<'a> {
     /// Isotropic linear elasticity.

@@ -13,8 +13,7 @@
 //! On a straight crack slip does not change the pressure and opening does not change the shear, so all points slip alike
 //! and the crack is a friction spring ([`FrictionSpring`]). The load factor scales the remote stress. Over a path of
 //! factors the state is the exact solution of the incremental problem (backward Euler). From rest the pressure grows with the
-//! slip: D = ½ μp |A| 2πa²/E'. Source: F. A. McClintock and J. B. Walsh (1962), sliding crack
-//! under compression.
+//! slip: D = ½ μp |A| 2πa²/E'. Source: F. A. McClintock and J. B. Walsh (1962), sliding crack under compression.
 //!
 //! Rigid motion: the midpoint of the crack does not move on average, the crack line does not turn.
 

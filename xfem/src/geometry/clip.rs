@@ -10,7 +10,7 @@ pub fn snapped(level: f64, tolerance: f64) -> f64 {
     if level.abs() <= tolerance { 0.0 } else { level }
 }
 
-/// What the distance of a place from a plane carries of the rounding of coordinates [m]: far from the origin a cut closer than
+/// Rounding of coordinates in the distance of a place from a plane [m]: far from the origin a cut closer than
 /// this to a corner is one through it, and what two cuts leave between them is nothing.
 pub fn rounding<'a>(corners: impl IntoIterator<Item = &'a Point>) -> f64 {
     let all = corners.into_iter().flatten();

@@ -21,7 +21,7 @@ pub struct TipFrame {
     pub ahead: Point,
     /// Crack normal, towards side 1.
     pub normal: Point,
-    /// What the crack behind it looks like.
+    /// Shape of the crack behind it.
     pub shape: FrontShape,
 }
 

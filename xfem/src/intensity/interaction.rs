@@ -34,7 +34,7 @@ use super::williams::{Mode, Williams, plane_modulus};
 pub type Gradients<'a> =
     dyn Fn(usize, &[ComparisonPoint]) -> Result<Vec<[Point; 3]>, CellError> + Sync + 'a;
 
-/// What the integral is taken of.
+/// The fields of the integral.
 pub struct Fields<'a> {
     /// The displacement, through its gradients.
     pub gradients: &'a Gradients<'a>,

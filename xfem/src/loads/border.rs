@@ -15,7 +15,7 @@ pub type Parts = Vec<Vec<Point>>;
 pub trait Condition {
     /// Whether it holds at a place.
     fn holds(&self, x: &Point, delta: f64) -> bool;
-    /// What it holds of a convex polygon or segment, and the rest.
+    /// Its part of a convex polygon or segment, and the rest.
     fn split(&self, polygon: Vec<Point>, delta: f64) -> [Parts; 2];
     /// Lowest and highest coordinate along an axis where it can hold.
     fn range(&self, axis: usize) -> [f64; 2];
@@ -196,7 +196,7 @@ impl<'a> Border<'a> {
         self.nodes_of(part).map(|n| self.mesh.nodes[n]).collect()
     }
 
-    /// What a region holds of a convex piece of the border, and the rest.
+    /// Part of a convex piece of the border that a region holds, and the rest.
     pub fn split(&self, region: &Region<'_>, piece: Vec<Point>) -> [Parts; 2] {
         match region.condition {
             Some(condition) => condition.split(piece, self.delta),

@@ -45,7 +45,7 @@ pub struct Place<'a> {
 /// Force per area, length or volume at a point [Pa, N/m, N/m³].
 pub type Density<'a> = &'a dyn Fn(&Place<'_>) -> Point;
 
-/// What a density acts on.
+/// Domain that a density acts on.
 #[derive(Clone, Copy)]
 pub enum Domain<'a> {
     /// Facets of a side.
@@ -222,7 +222,7 @@ struct Loaded<'a> {
 }
 
 impl Loaded<'_> {
-    /// What the region holds of a piece of the border.
+    /// Part of a piece of the border that the region holds.
     fn inside(&self, piece: Vec<Point>) -> Parts {
         let [inside, _] = self.border.split(&self.region, piece);
         inside
@@ -232,9 +232,10 @@ impl Loaded<'_> {
     fn parts(&self, name: &'static str) -> Result<Vec<BorderPart>, LoadError> {
         let mut parts = self.border.parts(&self.region);
         parts.retain(|part| !self.inside(self.border.corners(part)).is_empty());
-        match parts.is_empty() {
-            true => Err(LoadError::Empty(name)),
-            false => Ok(parts),
+        if parts.is_empty() {
+            Err(LoadError::Empty(name))
+        } else {
+            Ok(parts)
         }
     }
 

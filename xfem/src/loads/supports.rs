@@ -27,7 +27,7 @@ use super::border::{Border, BorderPart, Region};
 pub struct Support<'a> {
     /// Where it acts.
     pub on: Region<'a>,
-    /// What it prescribes, `dim` components; `None`: free.
+    /// Prescribed values, `dim` components; `None`: free.
     pub displacement: Vec<Option<Amount<'a>>>,
     /// The lip that nodes on a crack belong to, where the region does not tell.
     pub lip: Option<Side>,
@@ -82,7 +82,7 @@ pub struct Supports<'a> {
     of: BTreeMap<usize, Vec<usize>>,
 }
 
-/// What supports hold of copies of nodes; a copy goes by its function, the node's own by the standard one.
+/// Copies of nodes that supports hold; a copy goes by its function, the node's own by the standard one.
 #[derive(Default)]
 struct Held {
     by: BTreeMap<usize, BTreeSet<usize>>,
@@ -296,7 +296,7 @@ impl<'a> Supports<'a> {
         Ok(fixed)
     }
 
-    /// What every support holds beside cracks.
+    /// Nodes that every support holds beside cracks.
     fn held(&self, integrator: &CellIntegrator<'_>) -> Held {
         let (mesh, cracks, enrichment) = (self.mesh, integrator.cracks, integrator.enrichment);
         let mut held = Held::default();
@@ -409,7 +409,7 @@ impl<'a> Supports<'a> {
         self.spec(support).displacement[component].is_some()
     }
 
-    /// What a support states at a node [m]; `None`: the closed form, or nothing.
+    /// Displacement that a support states at a node [m]; `None`: the closed form, or nothing.
     fn amount(&self, support: usize, component: usize, node: usize) -> Option<f64> {
         match &self.spec(support).displacement[component] {
             Some(Amount::Stated(value)) => Some(value(&self.mesh.nodes[node])),

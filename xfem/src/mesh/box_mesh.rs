@@ -89,7 +89,7 @@ impl GridSpec {
     }
 }
 
-/// What moved grid points.
+/// The motion of grid points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// [`GridSpec::follow`].

@@ -357,7 +357,7 @@ impl CellMap {
         self.inverter().at(x)
     }
 
-    /// What finds the ξ of many points.
+    /// Finds the ξ of many points.
     pub fn inverter(&self) -> Inverter {
         Inverter::new(self)
     }

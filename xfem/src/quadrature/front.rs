@@ -368,9 +368,12 @@ mod tests {
         let integral = |n: usize, affine: bool, curved: bool| -> f64 {
             let along = unit(&sub(&chord[1], &chord[0]));
             let across = cross(&normal, &along);
-            let at = |x: &Point| match curved {
-                true => disc.meet(x, &across),
-                false => Some(*x),
+            let at = |x: &Point| {
+                if curved {
+                    disc.meet(x, &across)
+                } else {
+                    Some(*x)
+                }
             };
             let piece = FrontPiece { chord, normal, at };
             let fan = FanRule::fine(affine);

@@ -25,7 +25,7 @@ use super::{WeightedPoint, triangle_collapsed};
 /// The rate is Bernstein's (Trefethen, SIAM Review 50 (2008) 67, theorem 4.5).
 pub fn rational_order(map: &CellMap, [p, q]: [&Point; 2]) -> usize {
     const ERROR: f64 = 1e-14;
-    /// What cells close to parallelograms need.
+    /// Points that cells close to parallelograms need.
     const LEAST: usize = 5;
     /// A fold on the segment itself: no rule converges, and no mesh with convex cells has one.
     const MOST: usize = 200;

@@ -135,8 +135,7 @@ impl BlockMatrix {
         self.mul_at(0..self.functions(), |_| true, x)
     }
 
-    /// Rows of A x that belong to wanted functions; the others are 0. `columns`: all that share a cell with a wanted
-    /// function.
+    /// Rows of A x that belong to wanted functions; the others are 0. `columns`: all that share a cell with a wanted function.
     pub fn mul_at(
         &self,
         columns: impl IntoIterator<Item = usize>,

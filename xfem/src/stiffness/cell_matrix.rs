@@ -61,7 +61,7 @@ impl SidedPoint {
 pub struct CellError {
     /// Centre of the cell [m].
     pub at: Point,
-    /// What went wrong.
+    /// The failure.
     pub reason: String,
 }
 
@@ -199,9 +199,10 @@ impl<'a> CellIntegrator<'a> {
             })
         };
         // A ramp squared raises the degree by four.
-        let order = match self.enrichment.ramps_in(self.mesh.cell(cell), cell) {
-            true => [9, 7],
-            false => [7, 5],
+        let order = if self.enrichment.ramps_in(self.mesh.cell(cell), cell) {
+            [9, 7]
+        } else {
+            [7, 5]
         };
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
@@ -305,7 +306,7 @@ impl<'a> CellIntegrator<'a> {
 /// Makes the weights of every part sum to its measure, where they do to the accuracy of their rule: a linear field then has
 /// its gradient.
 fn fill(parts: &[Part], points: &mut [(WeightedPoint, Region)]) {
-    /// What a rule may miss, in parts of the measure; more is a slip in the geometry, found out later.
+    /// Part of the measure that a rule may miss; more is a slip in the geometry, found out later.
     const MISSED: f64 = 1e-3;
     for (region, part) in parts.iter().enumerate() {
         let measure = part.measure();

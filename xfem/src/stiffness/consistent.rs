@@ -119,9 +119,10 @@ impl CellIntegrator<'_> {
             });
             moments.push(gram.take_moments());
         }
-        let corrections = match self.is_corrected(cell, &functions) {
-            true => self.corrections(cell, &functions, &moments)?,
-            false => vec![vec![[0.0; 3]; functions.numbers.len()]; moments.len()],
+        let corrections = if self.is_corrected(cell, &functions) {
+            self.corrections(cell, &functions, &moments)?
+        } else {
+            vec![vec![[0.0; 3]; functions.numbers.len()]; moments.len()]
         };
         for (moments, corrections) in moments.iter().zip(&corrections) {
             gram.return_moments(moments, corrections);
@@ -136,7 +137,7 @@ impl CellIntegrator<'_> {
             && (self.enrichment.has_branch(cell) || !functions.map.is_affine())
     }
 
-    /// What the gradients of all functions lack, by region, from the moments of the rule.
+    /// Defect of the gradients of all functions, by region, from the moments of the rule.
     fn corrections(
         &self,
         cell: usize,
@@ -148,9 +149,10 @@ impl CellIntegrator<'_> {
         let tips = self.tips_of(functions);
         let whole: f64 = moments.iter().map(|m| m.measure).sum();
         // On a sliver the difference of border integrals is rounding, and what its rule misses is nothing to the cell.
-        let least = match functions.map.is_affine() {
-            true => 0.0,
-            false => SLIVER * whole,
+        let least = if functions.map.is_affine() {
+            0.0
+        } else {
+            SLIVER * whole
         };
         let mut found = vec![vec![[0.0; 3]; tips.len()]; moments.len()];
         // Evenly over a region: piece functions follow the shape functions.

@@ -28,7 +28,7 @@ const DEPTH: usize = 4;
 pub struct Effort {
     /// In slices.
     pub slices: FrontRule,
-    /// What distances are taken to be, in units of their own, where boxes and tetrahedra are halved: at most 1.
+    /// Scale of distances in units of their own, where boxes and tetrahedra are halved: at most 1.
     pub nearer: f64,
 }
 

@@ -61,7 +61,7 @@ impl Block {
         sets.sort_by_key(|set| set.iter().filter(|held| **held).count());
         sets.dedup();
         let form = |set: &Vec<bool>| {
-            // What is prescribed breaks the relations of what is left.
+            // Prescribed values break the relations of what is left.
             let whole = !set.contains(&true);
             let mut t = inverse_factor(gram, count, |i| set[i] || left_out(own[i], whole));
             t.iter_mut().for_each(|t| *t *= unit);

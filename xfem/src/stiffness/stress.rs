@@ -24,7 +24,7 @@ pub struct CellStress<'a> {
     lame: Lame,
     /// By region; `None`: of the gradient.
     assumed: Vec<Option<AssumedStress>>,
-    /// What the gradient's stress takes for its dilatation; `None`: the trace.
+    /// Dilatation of the gradient's stress; `None`: the trace.
     dilatation: Option<ProjectedDilatation<'a>>,
 }
 
@@ -41,9 +41,10 @@ impl<'a> CellIntegrator<'a> {
             }
         }
         let dilatation =
-            match self.lame.dilatation == Dilatation::Mean && assumed.iter().any(Option::is_none) {
-                true => Some(ProjectedDilatation::of(self, cell, &self.evaluated(cell)?)),
-                false => None,
+            if self.lame.dilatation == Dilatation::Mean && assumed.iter().any(Option::is_none) {
+                Some(ProjectedDilatation::of(self, cell, &self.evaluated(cell)?))
+            } else {
+                None
             };
         Ok(CellStress {
             functions: self.functions(cell),

@@ -1,4 +1,4 @@
-//! What the pattern of K says before its values are known: elimination order, supernodes, their rows.
+//! Analysis of the pattern of K before its values are known: elimination order, supernodes, their rows.
 //!
 //! The contact unknowns C come last, the others in the preferred order. The elimination tree is put in postorder (same
 //! fill, Liu 1990), columns with the same rows below them are joined, then also those that nearly have: dense kernels on
@@ -42,7 +42,7 @@ pub(crate) struct Entries {
     pub place: Vec<u32>,
 }
 
-/// What a factorisation goes by.
+/// Plan of a factorisation.
 pub(crate) struct Analysis {
     pub ordering: Ordering,
     pub tree: AssemblyTree,

@@ -150,7 +150,7 @@ impl Cholesky {
             if formed {
                 add_square(w.as_mut(), columns, y.own.as_ref());
             }
-            // What goes into the columns above is freed at once.
+            // The part that goes into the columns above is freed at once.
             if let Some(parent) = tree.nodes.get(node.parent) {
                 let width = seen[node.parent].len();
                 let above =

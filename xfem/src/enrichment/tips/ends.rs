@@ -1,4 +1,4 @@
-//! What lies behind a tip: how far its crack leads away from it, and the frame of its functions.
+//! The crack behind a tip: how far it leads away from it, and the frame of its functions.
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::cut::placement;

@@ -18,7 +18,7 @@ use super::{GRAZING, SHARE, Search};
 const FAR: f64 = 4.0;
 
 impl Search<'_> {
-    /// What others than the arms along which the functions of a tip jump part from it, of the cells of some nodes.
+    /// Parts of the cells of some nodes that others than the arms along which the functions of a tip jump part from it.
     pub(super) fn cut_off(
         &self,
         (frame, _): &(TipFrame, f64),

@@ -1,4 +1,4 @@
-//! What solves a problem on which a method gave up: a short list, the method itself with one option changed first.
+//! Remedies for a problem on which a method gave up: a short list, the method itself with one option changed first.
 
 use stickslip_methods::Increment;
 
@@ -22,8 +22,8 @@ pub fn of(choice: &Choice, increment: &Increment<'_>) -> Option<String> {
         .filter(|name| **name != choice.name())
         .filter_map(|name| Choice::parse(name).ok());
     let mut all = own.chain(others);
-    all.find(|cure| solves(cure, increment))
-        .map(|cure| cure.argument())
+    all.find(|remedy| solves(remedy, increment))
+        .map(|remedy| remedy.argument())
 }
 
 /// The method with one option changed; `None` if it has no such option, or that value already.

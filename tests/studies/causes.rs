@@ -1,4 +1,4 @@
-//! Why methods give up: every cause on a small problem of its own, its cure, and stopping tests that lie.
+//! Why methods give up: every cause on a small problem of its own, its remedy, and stopping tests that lie.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -39,7 +39,7 @@ struct Fixture {
     measure: Option<[f64; 2]>,
     rate: Option<[f64; 2]>,
     solutions: usize,
-    cure: Option<String>,
+    remedy: Option<String>,
 }
 
 fn high() -> f64 {
@@ -105,10 +105,10 @@ fn explained(f: &Fixture) -> (Verdict, Explanation) {
     })
 }
 
-/// Goal: every cause is what was constructed, in every detail that decides, and its cure cures.
+/// Goal: every cause is what was constructed, in every detail that decides, and its remedy remedies.
 #[test]
-fn every_cause_is_found_on_a_small_problem_of_its_own_and_cured() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/atlas");
+fn every_cause_is_found_on_a_small_problem_of_its_own_and_remedied() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/causes");
     let mut seen = BTreeSet::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -133,9 +133,9 @@ fn every_cause_is_found_on_a_small_problem_of_its_own_and_cured() {
             "{at}: {own:?}"
         );
         assert_eq!(found.solutions, f.solutions, "{at}");
-        if let Some(cure) = &f.cure {
-            assert_eq!(found.cure.as_ref(), Some(cure), "{at}");
-            assert_eq!(judged(cure, &f), Verdict::Solved, "{at}");
+        if let Some(remedy) = &f.remedy {
+            assert_eq!(found.remedy.as_ref(), Some(remedy), "{at}");
+            assert_eq!(judged(remedy, &f), Verdict::Solved, "{at}");
         }
         // The same twice.
         assert_eq!(
@@ -145,7 +145,7 @@ fn every_cause_is_found_on_a_small_problem_of_its_own_and_cured() {
         );
         seen.insert(f.cause);
     }
-    // What no method of this program has been seen to do, and what is not a cause.
+    // Ends that no method of this program has been seen to have, and those that are no cause.
     let unseen = [Cause::SingularTangent, Cause::Unexplained];
     let all: BTreeSet<String> = (Cause::ALL.iter().filter(|own| !unseen.contains(own)))
         .map(|own| own.name().to_owned())
@@ -169,7 +169,7 @@ fn plane(w: &[[f64; 4]; 4], q: [f64; 4], friction: f64, method: &str) -> Fixture
         measure: None,
         rate: None,
         solutions: 0,
-        cure: None,
+        remedy: None,
     }
 }
 
@@ -233,7 +233,7 @@ fn a_test_by_changes_lies_by_the_decades_of_the_rate() {
     let states = of("unchanged-states");
     assert_eq!(states.at, Some(3));
     assert!((states.decades - (9.0 + 3.0 * rate.log10())).abs() < 1e-9);
-    // What an approximate method ends with is all that it can be held to.
+    // An approximate method can be held to its end alone.
     let stops = evaluate("penalty", false, &seen[..10]);
     let states = stops
         .iter()
