@@ -19,7 +19,7 @@ keep() {
         case $name in
             *.svg) cp "$from"/figures/$name "$to/figures/" ;;
             *.*) cp "$from/$name" "$to/" ;;
-            *) cp "$from/$name".{csv,md,tex} "$to/" ;;
+            *) for end in csv md tex; do [[ ! -e $from/$name.$end ]] || cp "$from/$name.$end" "$to/"; done ;;
         esac
     done
     rmdir --ignore-fail-on-non-empty "$to/figures"
@@ -44,7 +44,8 @@ for part in $parts; do
                 expectations_by_case cost.svg \
                 'beam_model1.6x18x9.edge-pairs.*.mu-0.1.state.svg' 'penny_crack.*.state.svg' \
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
-                'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.state.svg'
+                'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.state.svg' \
+                'time_against_total_error.plate_mesh1*.svg'
             keep accuracy orders.csv 'partial_slip.*.energy.error.svg'
             keep stress stress_scenes stress_invariances stress_ladders success success.svg
             cp -r results/stress/cases reports/stress/

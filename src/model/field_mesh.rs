@@ -9,6 +9,7 @@ use stickslip_xfem::cut::part::Part;
 use stickslip_xfem::cut::partition::Partition;
 use stickslip_xfem::geometry::clip::{Side, crossing};
 use stickslip_xfem::geometry::{Point, add_scaled, cross, dot, mean, norm, polygon, sub};
+use stickslip_xfem::material;
 use stickslip_xfem::mesh::cell::{CellKind, CellMap};
 
 use crate::model::body::Body;
@@ -27,7 +28,7 @@ pub struct FieldMesh {
     pub point_vectors: Vec<(String, Vec<[f64; 3]>)>,
     /// Point scalars.
     pub point_scalars: Vec<(String, Vec<f64>)>,
-    /// Cell scalars, e.g. `von_mises_pa`, `side`.
+    /// Cell scalars, e.g. `stress_xx_pa`, `von_mises_pa`, `side`.
     pub cell_scalars: Vec<(String, Vec<f64>)>,
 }
 
@@ -66,7 +67,8 @@ pub struct FieldStep {
     pub time: f64,
     /// The body.
     pub body: FieldMesh,
-    /// The crack surfaces with gap_m, slip, p_n, p_t, status (0 open, 1 stick, 2 slip) as point data.
+    /// The crack surfaces with jump, traction, gap, slip, pressure, shear, status (0 open, 1 stick, 2 slip), number of the crack and distance along
+    /// it (0 in 3D) as point data.
     pub crack: FieldMesh,
 }
 
@@ -79,13 +81,32 @@ pub fn field_step(body: &Body, now: &Snapshot) -> FieldStep {
     }
 }
 
+/// Stress of the strain, without an initial one, by name, row and column in 2D and 3D.
+const STRESS: [&[(&str, usize, usize)]; 2] = [
+    &[
+        ("stress_xx_pa", 0, 0),
+        ("stress_yy_pa", 1, 1),
+        ("stress_xy_pa", 0, 1),
+    ],
+    &[
+        ("stress_xx_pa", 0, 0),
+        ("stress_yy_pa", 1, 1),
+        ("stress_zz_pa", 2, 2),
+        ("stress_yz_pa", 1, 2),
+        ("stress_xz_pa", 0, 2),
+        ("stress_xy_pa", 0, 1),
+    ],
+];
+
 /// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
 fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
     let integrator = body.integrator();
     let mut cells = Vec::new();
     let mut vertices = Vertices::new(body, now);
-    let (mut stress, mut sides) = (Vec::new(), Vec::new());
+    let axes: &[(&str, usize, usize)] = STRESS[usize::from(dim == 3)];
+    let mut stress = vec![Vec::new(); axes.len() + 1];
+    let mut sides = Vec::new();
     let whole = match mesh.kind {
         CellKind::Quad4 => CellShape::Quad,
         CellKind::Hex8 => CellShape::Hexahedron,
@@ -94,19 +115,23 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         let map = mesh.map(cell);
         // As its stiffness, which was integrated: no number is no stress.
         let mut own = integrator.stress(cell).ok();
-        let mut von_mises = |xi: Point, region: usize| match &mut own {
-            Some(own) => {
-                let h = own.field(&xi, &map.at(&xi), region, &now.u).1;
-                body.lame.von_mises(&h, dim)
+        let mut add_stress = |xi: Point, region: usize| {
+            let h = own
+                .as_mut()
+                .map(|own| own.field(&xi, &map.at(&xi), region, &now.u).1);
+            let sigma = h.map(|h| material::stress(body.lame, dim, &h));
+            for (values, &(_, a, b)) in stress.iter_mut().zip(axes) {
+                values.push(sigma.map_or(f64::NAN, |sigma| sigma[a][b]));
             }
-            None => f64::NAN,
+            let von_mises = h.map_or(f64::NAN, |h| body.lame.von_mises(&h, dim));
+            stress[axes.len()].push(von_mises);
         };
         let Some(partition) = body.enrichment.partition(cell) else {
             cells.push(FieldCell {
                 shape: whole,
                 points: map.iter().map(|x| vertices.of(cell, x, 0, now)).collect(),
             });
-            stress.push(von_mises([0.0; 3], 0));
+            add_stress([0.0; 3], 0);
             sides.push(0.0);
             continue;
         };
@@ -120,18 +145,21 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
                         .collect(),
                 });
                 let xi = map.inverse(&mean(&part)).unwrap_or_default();
-                stress.push(von_mises(xi, region));
+                add_stress(xi, region);
                 sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
             }
         }
     }
+    let names = axes.iter().map(|axis| axis.0).chain(["von_mises_pa"]);
+    let mut cell_scalars: Vec<(String, Vec<f64>)> = names.map(str::to_owned).zip(stress).collect();
+    cell_scalars.push(("side".into(), sides));
     FieldMesh {
         dim,
         points: vertices.points.iter().map(|x| body.place(x)).collect(),
         cells,
         point_vectors: vec![("displacement_m".into(), vertices.displacement)],
         point_scalars: Vec::new(),
-        cell_scalars: vec![("von_mises_pa".into(), stress), ("side".into(), sides)],
+        cell_scalars,
     }
 }
 
@@ -335,6 +363,12 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
             PointStatus::Slip => 2.0,
         })
     };
+    let crack = |corner: &SurfaceCorner| {
+        let first = corner.shares.first();
+        first.map_or(f64::NAN, |&(point, _)| {
+            body.points[point as usize].crack as f64 + 1.0
+        })
+    };
     let weight = |i: usize| body.points[i].weight;
     let cells = body
         .surface
@@ -373,6 +407,8 @@ fn crack_picture(body: &Body, now: &Snapshot) -> FieldMesh {
                 scalar(&|i| tangential(&now.p, dim, i) / weight(i)),
             ),
             ("status".into(), corners.iter().map(leading).collect()),
+            ("crack".into(), corners.iter().map(crack).collect()),
+            ("s_m".into(), scalar(&|i| body.points[i].s)),
         ],
         cell_scalars: Vec::new(),
     }

@@ -39,8 +39,12 @@ pub trait Row: Sized {
     const QUESTION: &'static str;
     /// Further text of its chapter in `stickslip show schema`; may be empty.
     const NOTES: &'static str = "";
-    /// Whether it is written as Markdown and LaTeX too, for reading.
+    /// Whether it is written as Markdown too, for reading.
     const READABLE: bool = true;
+    /// Whether it is written as LaTeX too, for printing.
+    const PRINTED: bool = false;
+    /// Number of rows beyond which nobody reads it.
+    const MOST_READ: usize = usize::MAX;
     /// Order of the rows.
     const ORDER: Order<Self> = Order::Keys;
     /// How it is turned for reading, where its file is long.
@@ -156,8 +160,9 @@ pub fn add<R: Row>(bundle: &mut Bundle, rows: &[R], note: &str) -> Result<(), Re
     if rows.is_empty() {
         return Ok(());
     }
-    let read = R::READABLE.then(|| readable(rows, note));
-    add_forms(bundle, R::NAME, csv(rows)?, read)
+    let is_read = R::READABLE && rows.len() <= R::MOST_READ;
+    let read = is_read.then(|| readable(rows, note));
+    add_forms(bundle, R::NAME, csv(rows)?, read, R::PRINTED)
 }
 
 fn add_forms(
@@ -165,11 +170,14 @@ fn add_forms(
     name: &str,
     csv: Vec<u8>,
     read: Option<Readable>,
+    printed: bool,
 ) -> Result<(), ReportError> {
     bundle.add(format!("{name}.csv"), csv)?;
     if let Some(table) = read {
         bundle.add(format!("{name}.md"), table.markdown())?;
-        bundle.add(format!("{name}.tex"), table.latex(&format!("tab:{name}")))?;
+        if printed {
+            bundle.add(format!("{name}.tex"), table.latex(&format!("tab:{name}")))?;
+        }
     }
     Ok(())
 }

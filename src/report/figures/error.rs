@@ -130,6 +130,9 @@ fn figure(rows: &[&OrderRow], errors: &[ErrorRow]) -> Figure {
     if rows.iter().any(|row| is_exact(&measured(row, errors))) {
         caption += &format!("; exact: error below {}", value(TOLERANCE));
     }
+    if first.finest.kind == Some(orders::Kind::Estimate) {
+        caption += "; estimated from the strain energies of the meshes";
+    }
     let tips = distinct(rows.iter().map(|row| &row.finest.variant.tip)).len();
     let columns = if tips > 1 { tips } else { panels.len() }.min(3);
     // One legend is enough where all panels say the same.

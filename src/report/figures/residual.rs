@@ -1,7 +1,7 @@
 //! Violation of the contact laws against iteration: all methods on one problem.
 
 use super::kind::Kind;
-use super::runs::{Run, by_problem, counted, distinct, problem};
+use super::runs::{Run, by_problem, distinct, problem};
 use crate::report::plot::{Axis, Figure, Panel, Series, looks, plain};
 use crate::report::{Bundle, ReportError};
 use crate::studies::results::Results;
@@ -34,32 +34,31 @@ pub fn add(bundle: &mut Bundle, results: &Results) -> Result<(), ReportError> {
 
 /// The figure of one problem; `found`: what became of its runs.
 fn figure(runs: &[Run<'_, HistoryRow>], found: &[&IncrementRow<'_>]) -> Figure {
-    let mut solved = found.to_vec();
-    solved.retain(|row| row.step.verdict.is_solved());
-    solved.sort_by_key(|row| row.step.iterations);
-    let ends = [solved.first(), solved.last()].into_iter().flatten();
-    let ends: Vec<(&str, usize)> = ends
-        .map(|row| (row.key.method.as_str(), row.step.iterations))
-        .collect();
-    let title = match ends[..] {
-        [(a, few), (b, many)] if few < many => {
-            let few = counted(few, "iteration");
-            format!("{} needs {few}, {} {many}", plain(a), plain(b))
+    let (solved, others): (Vec<_>, Vec<_>) =
+        found.iter().partition(|row| row.step.verdict.is_solved());
+    // Iterations of different methods are no common unit: who ends is said, not who needs fewer.
+    let name = |row: &&IncrementRow<'_>| plain(&row.key.method);
+    let title = match (&solved[..], &others[..]) {
+        ([], _) => "No method solves the contact laws".to_owned(),
+        ([one], []) => format!("{} solves the contact laws", name(one)),
+        (all, []) => format!("All {} methods solve the contact laws", all.len()),
+        (_, few @ ([_] | [_, _] | [_, _, _])) => {
+            let names: Vec<String> = few.iter().map(name).collect();
+            format!("All but {} solve the contact laws", names.join(", "))
         }
-        [(a, few), (b, _)] if a == b => format!("{} needs {}", plain(a), counted(few, "iteration")),
-        [(_, few), _] => format!("All that solve it need {}", counted(few, "iteration")),
-        _ => "No method solves the contact laws".to_owned(),
+        _ => format!(
+            "{} of {} methods solve the contact laws",
+            solved.len(),
+            found.len()
+        ),
     };
     let mut caption = problem(runs[0].0);
-    if found.len() > solved.len() {
-        let tried = counted(found.len(), "method");
-        caption += &format!("; {} of {tried} solve the contact laws", solved.len());
-    }
     let y = Axis::log("violation of the contact laws [-]");
     let mut panel = Panel::new(Axis::counts("iteration [-]"), y, 62.0);
     let methods: Vec<&str> = runs.iter().map(|(key, _)| key.method.as_str()).collect();
-    let extremes: Vec<&str> = ends.iter().map(|end| end.0).collect();
-    for ((_, rows), (label, style)) in runs.iter().zip(looks(&methods, &extremes)) {
+    let unsolved = others.iter().map(|row| row.key.method.as_str());
+    let unsolved: Vec<&str> = unsolved.take(3).collect();
+    for ((_, rows), (label, style)) in runs.iter().zip(looks(&methods, &unsolved)) {
         let known = rows.iter().filter(|row| row.violation.is_finite());
         let point = |row: &&HistoryRow| [row.iteration as f64, row.violation.max(SHOWN)];
         let mut points: Vec<[f64; 2]> = known.map(point).collect();

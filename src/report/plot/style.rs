@@ -186,6 +186,9 @@ impl Style {
     }
 }
 
+/// So many methods that were chosen all stand out.
+const FEW: usize = 8;
+
 /// Methods that stand out in every figure: those of the founding paper, and the fast and the known ones beside them.
 pub const HIGHLIGHTED: [&str; 6] = [
     "b-newton",
@@ -272,7 +275,8 @@ pub fn looks(labels: &[&str], further: &[&str]) -> Vec<(String, Style)> {
         let first = labels[..index].iter().all(|label| base(label) != name);
         let named = first && HIGHLIGHTED.contains(&name);
         // Who brings a program looks for it.
-        let shown = named || is_outside(name) || further.contains(&labels[index]);
+        let few = labels.len() <= FEW;
+        let shown = named || few || is_outside(name) || further.contains(&labels[index]);
         extra += usize::from(shown && !named);
         shown.then(|| Style::of_method(labels[index], extra.saturating_sub(1)))
     };

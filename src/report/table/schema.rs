@@ -14,8 +14,10 @@ pub struct Description {
     pub question: &'static str,
     /// Further text of its chapter.
     pub notes: &'static str,
-    /// Whether there are `.md` and `.tex` beside the `.csv`.
+    /// Whether there is a `.md` beside the `.csv`.
     pub readable: bool,
+    /// Whether there is a `.tex` beside it.
+    pub printed: bool,
     /// Columns of the CSV file.
     pub columns: Vec<About>,
     /// How it is turned for reading.
@@ -31,6 +33,7 @@ impl Description {
             question: R::QUESTION,
             notes: R::NOTES,
             readable: R::READABLE,
+            printed: R::READABLE && R::PRINTED,
             columns: R::columns().iter().map(|column| column.about).collect(),
             pivot: R::PIVOT,
         }
@@ -53,7 +56,11 @@ impl Description {
             text += &format!(" {}", self.notes);
         }
         if self.readable {
-            text += " Also as `.md` and `.tex`.";
+            text += if self.printed {
+                " Also as `.md` and `.tex`."
+            } else {
+                " Also as `.md`."
+            };
         }
         text += "\n\n| column | unit | meaning |\n| :--- | :--- | :--- |\n";
         for column in &self.columns {

@@ -104,6 +104,7 @@ impl Row for ErrorRow {
 
 impl Row for OrderRow {
     const NAME: &'static str = "orders";
+    const PRINTED: bool = true;
     const TITLE: &'static str = "Observed beside theoretical orders of convergence over the last two halvings (reference exact: closed form; finest: value on the finest mesh, with its error bar)";
     const QUESTION: &'static str =
         "Do the errors fall as fast as theory promises, and to which limit, whatever the mesh?";

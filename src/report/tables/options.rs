@@ -27,6 +27,7 @@ fn end(range: Option<[f64; 2]>, which: usize) -> f64 {
 
 impl Row for OptionRow<'_> {
     const NAME: &'static str = "options";
+    const PRINTED: bool = true;
     const TITLE: &'static str = "Ranges of tried values of an option about its default in which every problem is solved (safe), and in which iterations on no problem exceed twice those at the default (fast)";
     const QUESTION: &'static str = "How wrong may a parameter of a method be on these problems?";
     const NOTES: &'static str = "Of runs of a method that differ in one option alone, with at least three values of it (of a switch, two), on the problems that every value was given. Solved: the contact laws hold to the tolerance, of methods with laws of their own these.";

@@ -16,6 +16,7 @@ fn compare_methods(a: &str, b: &str) -> Ordering {
 
 impl Row for Table1Row {
     const NAME: &'static str = "table1";
+    const PRINTED: bool = true;
     const TITLE: &'static str =
         "Table 1 of the founding paper: vertical reaction at the top of the plate";
     const QUESTION: &'static str = "Do all methods find the reactions that the paper prints?";
@@ -46,6 +47,7 @@ impl Row for Table1Row {
 
 impl Row for Table2Row {
     const NAME: &'static str = "table2";
+    const PRINTED: bool = true;
     const TITLE: &'static str =
         "Table 2 of the founding paper: displacement of the points P1 to P7 of the beam";
     const QUESTION: &'static str = "Do all methods find the displacements that the paper prints?";
@@ -101,6 +103,7 @@ impl Row for PenaltyRow {
 
 impl Row for ComparisonRow {
     const NAME: &'static str = "comparison";
+    const PRINTED: bool = true;
     const TITLE: &'static str = "Every case by every method, plate and beam by variants of them too: all meshes, friction coefficients and increments together";
     const QUESTION: &'static str = "Which method solves which case, and at what cost?";
 

@@ -82,6 +82,7 @@ pub fn peers() -> Description {
         question: "How do the methods here compare with the best of other programs?",
         notes: "Written by `benches/peers`, whose README says how all were run.",
         readable: true,
+        printed: false,
         pivot: None,
         columns,
     }

@@ -24,6 +24,7 @@ fn compare_tiers(a: Tier, b: Tier) -> Ordering {
 
 impl Row for SuccessRow {
     const NAME: &'static str = "success";
+    const PRINTED: bool = true;
     const TITLE: &'static str = "What methods claim, and what the judge confirms, by accuracy, with Wilson's 95 % intervals";
     const QUESTION: &'static str = "Which method is right how often, and how does it fail?";
     const NOTES: &'static str = "Every problem counts, refused ones as not solved.";
@@ -111,6 +112,7 @@ impl RankingRow {
 
 impl Row for RankingRow {
     const NAME: &'static str = "ranking";
+    const PRINTED: bool = true;
     const TITLE: &'static str = "Shifted geometric mean of the time of the method over all problems; methods whose intervals overlap share a rank";
     const QUESTION: &'static str = "Which method is fastest at which accuracy?";
     const NOTES: &'static str = "exp(mean ln(t + shift)) − shift (Achterberg 2007). A method without any right answer has no rank.";

@@ -134,7 +134,8 @@ impl Row for RunRow<'_> {
     const QUESTION: &'static str =
         "Which run is right, how exact is it, after how much work, in what time?";
     const NOTES: &'static str = "A row for a problem, a method and an accuracy; counters are sums over the increments of the path, violations and errors the largest of them. Times stand beside honest verdicts only, of runs that had the machine to themselves; they are medians of the repetitions.";
-    const READABLE: bool = false;
+    const PRINTED: bool = true;
+    const MOST_READ: usize = 100;
     const ORDER: Order<Self> = Order::By(|a, b| compare_runs(a.0, b.0));
 
     fn columns() -> Vec<Column<Self>> {
