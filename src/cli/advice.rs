@@ -2,6 +2,7 @@
 
 use super::output::warn;
 use crate::case::Case;
+use crate::model::quantities::PointState;
 use crate::report::number::significant;
 use crate::studies::results::Results;
 
@@ -42,12 +43,9 @@ pub fn on_results(case: &Case, results: &Results) {
             .filter(|own| own.record.asked.case == case.name)
     };
     let count = |crack: usize| {
-        let of = |points: &Vec<_>| {
-            let points: &[crate::model::quantities::PointState] = points;
-            points
-                .iter()
-                .filter(|point| point.crack == crack + 1)
-                .count()
+        let of = |points: &Vec<PointState>| {
+            let own = points.iter().filter(|point| point.crack == crack + 1);
+            own.count()
         };
         own().filter_map(|own| own.points.last()).map(of).min()
     };

@@ -14,7 +14,8 @@
 use stickslip_methods::PointStatus;
 use stickslip_xfem::discretisation::norms::side_of;
 use stickslip_xfem::discretisation::tips::{
-    FIT_REACH, Loads, crack_size, tip_fronts, tip_intensities,
+    FIT_REACH, FRONT_POINTS, Loads, WAYS, crack_size, front_place, tip_fronts, tip_intensities,
+    tip_place,
 };
 use stickslip_xfem::geometry::tip_frame::TipFrame;
 use stickslip_xfem::geometry::{Point, norm, sub};
@@ -32,67 +33,65 @@ pub const OF_TIPS: [&str; 3] = ["stress_intensity", "energy_release_rate", "grow
 
 /// Places of the tips of a crack, as far as its case tells: a mesh may have fewer.
 pub fn places(crack: &str, dim: usize) -> impl Iterator<Item = String> {
-    (0..8).map(move |k| match dim {
-        2 => format!("{crack} tip-{}", k + 1),
-        _ => format!("{crack} front-{}deg", 45 * k),
+    (0..FRONT_POINTS).map(move |k| match dim {
+        2 => tip_place(crack, k),
+        _ => front_place(crack, k),
     })
 }
 
 /// Quantities of interest at the end of an increment; of a tip without room for an integral one without value, with the reason.
 pub fn intensities(loading: &Loading<'_>, increment: usize, now: &Snapshot) -> Vec<Quantity> {
     let (body, dim) = (loading.body(), loading.body().mesh.dim());
-    let force = |x: &Point, side: Option<f64>| {
-        let side = side.unwrap_or_else(|| side_of(body, x));
-        loading.body_force(increment, x, side)
-    };
+    let side_at = |x: &Point, side: Option<f64>| side.unwrap_or_else(|| side_of(body, x));
+    let force = |x: &Point, side| loading.body_force(increment, x, side_at(x, side));
     let loads = Loads {
         body_force: &force,
         initial_stress: loading.initial_stress(increment),
     };
     let mut rows = Vec::new();
     for (at, tip) in tip_fronts(body) {
-        let row = |name: &str, component: &str, value: f64, error: f64| {
-            let error_kind = if error.is_finite() { ESTIMATE } else { "" };
-            Quantity {
-                error: if error.is_finite() { error } else { f64::NAN },
-                error_kind: error_kind.into(),
-                ..Quantity::new([name, &at, component], value, dim)
-            }
+        let row = |name: &str, component: &str, value: f64, error: f64| Quantity {
+            error,
+            error_kind: if error.is_nan() { "" } else { ESTIMATE }.into(),
+            ..Quantity::new([name, &at, component], value, dim)
         };
-        let state = [&now.u[..], &now.p[..]];
-        let found = tip_intensities(body, &body.surface.quadrature, &tip, state, &loads);
-        let reason = match found.as_ref().map(|found| found.best()) {
-            Ok(Some([mut k, apart])) => {
-                let by_jump = found.as_ref().ok().and_then(|found| found.jumps.first());
-                if let Some(jump) = by_jump.filter(|_| is_closed(loading, now, &tip)) {
-                    k[0] = jump[0];
-                }
+        match of_tip(loading, now, &tip, &loads) {
+            Ok([k, apart]) => {
                 let rates = |k: [f64; 3]| rate(k, plane_modulus(body.lame), body.lame.mu);
                 for c in 0..dim {
                     rows.push(row("stress_intensity", MODES[c], k[c], apart[c]));
                 }
-                rows.push(row(
-                    "energy_release_rate",
-                    "",
-                    rates(k),
-                    spread(rates, k, apart),
-                ));
+                let error = spread(rates, k, apart);
+                rows.push(row("energy_release_rate", "", rates(k), error));
                 rows.push(row("growth_angle", "", angle(k), spread(angle, k, apart)));
-                continue;
             }
-            Ok(None) => {
-                let obstacle = found.as_ref().ok().and_then(|found| found.obstacle);
-                let few = "too few contact points behind it".to_owned();
-                obstacle.map_or(few, |obstacle| format!("its surroundings reach {obstacle}"))
-            }
-            Err(error) => error.to_string(),
-        };
-        rows.push(Quantity {
-            error_kind: format!("not computable: {reason}"),
-            ..row("stress_intensity", "", f64::NAN, f64::NAN)
-        });
+            Err(reason) => rows.push(Quantity {
+                error_kind: format!("not computable: {reason}"),
+                ..row("stress_intensity", "", f64::NAN, f64::NAN)
+            }),
+        }
     }
     rows
+}
+
+/// K_I, K_II, K_III at a tip and how far other ways to find them differ, or why there are none.
+fn of_tip(
+    loading: &Loading<'_>,
+    now: &Snapshot,
+    tip: &TipFrame,
+    loads: &Loads<'_>,
+) -> Result<[[f64; 3]; 2], String> {
+    let (body, state) = (loading.body(), [&now.u[..], &now.p[..]]);
+    let found = tip_intensities(body, &body.surface.quadrature, tip, state, loads, WAYS);
+    let found = found.map_err(|error| error.to_string())?;
+    let [mut k, apart] = found.best().ok_or_else(|| match found.obstacle {
+        Some(obstacle) => format!("its surroundings reach {obstacle}"),
+        None => "too few contact points behind it".to_owned(),
+    })?;
+    if let Some(jump) = found.jumps.first().filter(|_| is_closed(loading, now, tip)) {
+        k[0] = jump[0];
+    }
+    Ok([k, apart])
 }
 
 /// Whether the faces touch all along the jump fit: contact makes K_I vanish there, whatever the tractions that it takes.

@@ -37,6 +37,11 @@ pub const ESTIMATE: &str = "estimate";
 pub const EXACT: &str = "exact";
 
 impl Quantity {
+    /// Place and component, e.g. `top y`; empty: the whole body.
+    pub fn place(&self) -> String {
+        format!("{} {}", self.at, self.component).trim().to_owned()
+    }
+
     /// A value with its name, place and component in a body of that dimension, without an estimate of its error.
     pub fn new([name, at, component]: [&str; 3], value: f64, dim: usize) -> Self {
         Self {

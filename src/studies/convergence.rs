@@ -23,6 +23,7 @@ use crate::run::progress::Progress;
 use crate::run::verdict::Accuracy;
 use crate::studies::axes::{Axes, Subject, named, space_name, tip_name};
 use crate::studies::measure::{Bench, RunError, here};
+use crate::studies::record::Record;
 use crate::studies::task::Looks;
 use crate::studies::tips::{Regularity, regularity};
 
@@ -87,11 +88,6 @@ pub fn run(
     plan: &ConvergencePlan,
     progress: &dyn Progress,
 ) -> Result<Vec<Sample>, RunError> {
-    let looks = Looks {
-        truth: true,
-        ..Looks::default()
-    };
-    let accuracy = Accuracy::of(case, case.tier);
     let choices = std::slice::from_ref(&plan.choice);
     let (mut samples, mut bench) = (Vec::new(), Bench::default());
     // A crack along cell facets has the same pairs in every space.
@@ -104,22 +100,12 @@ pub fn run(
                 tips: vec![tip_name(tip)],
                 ..Axes::of(case)
             };
-            let tasks = Subject::given(case).tasks(&axes, &named(choices), &[accuracy], looks);
-            let answers = here(
-                &mut bench,
-                &tasks,
-                choices,
-                1,
-                None,
-                progress,
-                &mut |_, _| (),
-            )?;
+            let own = records(&mut bench, case, &axes, choices, Looks::truth(), progress)?;
             let mut variant = case.clone();
             for crack in &mut variant.cracks {
                 crack.tip = tip.unwrap_or(crack.tip);
             }
-            let own = answers.into_iter().map(|own| own.record);
-            let own = own.filter_map(|record| Sample::of(&record, &variant));
+            let own = own.iter().filter_map(|record| Sample::of(record, &variant));
             samples.extend(own.filter(|sample| {
                 let Variant {
                     space,
@@ -133,4 +119,22 @@ pub fn run(
         }
     }
     Ok(samples)
+}
+
+/// Records of a case at its own accuracy, measured in this process one after the other, so that times mean something.
+///
+/// # Errors
+/// Of the case or its discretisation; what a method does wrong is a verdict.
+pub fn records(
+    bench: &mut Bench,
+    case: &Case,
+    axes: &Axes,
+    choices: &[Choice],
+    looks: Looks,
+    progress: &dyn Progress,
+) -> Result<Vec<Record>, RunError> {
+    let accuracy = [Accuracy::of(case, case.tier)];
+    let tasks = Subject::given(case).tasks(axes, &named(choices), &accuracy, looks);
+    let answers = here(bench, &tasks, choices, 1, None, progress, &mut |_, _| ())?;
+    Ok(answers.into_iter().map(|own| own.record).collect())
 }

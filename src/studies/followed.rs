@@ -66,7 +66,7 @@ pub fn followed(case: &Case, loading: &Loading<'_>, now: &Snapshot) -> Vec<Value
                 _ => now.strain_energy,
             };
             Value {
-                at: format!("{} {}", row.at, row.component).trim().to_owned(),
+                at: row.place(),
                 quantity: row.name.clone(),
                 value: row.value,
                 norm,

@@ -77,10 +77,15 @@ pub fn measure(scene: &Scene<'_>, task: &Task, choice: &Choice) -> Result<Answer
             output_s = scene.output(now);
         }
         if task.looks.truth {
-            found.values = followed(case, loading, now);
-            if let Some(field) = loading.exact(loading.increments()) {
-                found.deviations = errors(body, &body.surface.quadrature, field, now)?;
+            match loading.exact(loading.increments()) {
+                Some(field) => {
+                    found.deviations = errors(body, &body.surface.quadrature, field, now)?;
+                }
+                None => found.values = followed(case, loading, now),
             }
+        }
+        if task.looks.values && found.values.is_empty() {
+            found.values = followed(case, loading, now);
         }
     }
     if let Some([reactions, _]) = answer.solution.as_ref().filter(|_| task.looks.truth) {

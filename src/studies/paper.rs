@@ -12,15 +12,14 @@ pub mod variants;
 
 pub use lookup::{PaperError, as_printed};
 
-use stickslip_methods::Tier;
-
 use crate::case::shipped;
+use crate::run::choice::Choice;
 use crate::run::progress::Progress;
-use crate::run::verdict::Accuracy;
-use crate::studies::axes::{Axes, Subject, named};
+use crate::studies::axes::Axes;
 use crate::studies::cases::{Fields, Settings, run_case};
 use crate::studies::convergence::orders::{ErrorRow, OrderRow};
-use crate::studies::measure::{Bench, here};
+use crate::studies::convergence::records;
+use crate::studies::measure::Bench;
 use crate::studies::record::Record;
 use crate::studies::results::Results;
 use crate::studies::task::Looks;
@@ -93,8 +92,7 @@ pub fn first_tables(
     settings: Settings,
     progress: &dyn Progress,
 ) -> Result<(Vec<Table1Row>, Vec<Table2Row>), PaperError> {
-    let choices = PAPER_METHODS.map(|name| choice(name, &[]));
-    let choices = choices.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let choices = paper_choices()?;
     let settings = Settings {
         fields: Fields::None,
         ..settings
@@ -148,30 +146,26 @@ pub fn run(
 const MESHES: [usize; 3] = [1, 2, 4];
 const FRICTION: f64 = 0.8;
 
+fn paper_choices() -> Result<Vec<Choice>, PaperError> {
+    let choices = PAPER_METHODS.map(|name| choice(name, &[]));
+    choices.into_iter().collect()
+}
+
 fn refined_plate(progress: &dyn Progress) -> Result<Vec<Record>, PaperError> {
     let plate = case(CASES[0])?;
-    let choices = PAPER_METHODS.map(|name| choice(name, &[]));
-    let choices = choices.into_iter().collect::<Result<Vec<_>, _>>()?;
     let axes = Axes {
         refine: MESHES.to_vec(),
         friction: vec![vec![FRICTION]],
         ..Axes::of(&plate)
     };
-    let looks = Looks {
-        truth: true,
-        ..Looks::default()
-    };
-    let accuracies = [Accuracy::exactly(Tier::High.tolerance())];
-    let tasks = Subject::of(&plate).tasks(&axes, &named(&choices), &accuracies, looks);
     let mut bench = Bench::default();
-    let answers = here(
+    let choices = paper_choices()?;
+    Ok(records(
         &mut bench,
-        &tasks,
+        &plate,
+        &axes,
         &choices,
-        1,
-        None,
+        Looks::truth(),
         progress,
-        &mut |_, _| (),
-    )?;
-    Ok(answers.into_iter().map(|own| own.record).collect())
+    )?)
 }

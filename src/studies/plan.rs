@@ -23,6 +23,7 @@
 mod block;
 mod options;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use stickslip_methods::Tier;
@@ -132,15 +133,14 @@ impl Plan {
 
     /// Time on one core [s], from the cells of the meshes: within a factor of three where methods converge.
     fn predicted(&self, problems: &[Problem]) -> f64 {
+        let meshes = problems.iter().map(|own| (&own.subject.digest, own.mesh));
+        let meshes: BTreeMap<&String, Option<(usize, f64)>> = meshes.collect();
         let of = |task: &Task| {
-            let own = problems
-                .iter()
-                .find(|own| own.subject.digest == task.asked.digest);
-            own.and_then(|own| own.mesh)
-                .map_or(FIXED_S, |(dim, cells)| {
-                    let cells = cells * (task.asked.refine as f64).powi(dim as i32);
-                    FIXED_S + CELL_S[usize::from(dim == 3)] * cells
-                })
+            let mesh = meshes.get(&task.asked.digest).copied().flatten();
+            mesh.map_or(FIXED_S, |(dim, cells)| {
+                let cells = cells * (task.asked.refine as f64).powi(dim as i32);
+                FIXED_S + CELL_S[usize::from(dim == 3)] * cells
+            })
         };
         self.tasks.iter().map(of).sum()
     }

@@ -1,5 +1,7 @@
 //! Everything a command found, before it is written.
 
+use std::collections::BTreeSet;
+
 use crate::studies::measure::Answer;
 use crate::studies::record::Record;
 use crate::studies::rows::{
@@ -52,46 +54,23 @@ impl Results {
     /// Quantities of interest at the end of every increment.
     pub fn quantities(&self) -> Vec<QuantityRow<'_>> {
         let rows = self.records().flat_map(IncrementRow::of);
-        rows.flat_map(|IncrementRow { key, step, .. }| {
-            let own = step.quantities.iter();
-            own.map(move |quantity| QuantityRow {
-                key: key.clone(),
-                quantity,
-            })
-        })
-        .collect()
+        rows.flat_map(of_increment).collect()
     }
 
     /// Quantities of interest with a known error at the end of the path, by the first exact method on every problem.
     pub fn with_errors(&self) -> Vec<QuantityRow<'_>> {
-        let mut seen = Vec::new();
-        let mut rows = self.quantities();
-        rows.retain(|row| {
-            let RunKey {
-                case,
-                mesh,
-                space,
-                friction,
-                ..
-            } = &row.key;
-            let problem = (
-                case.clone(),
-                mesh.clone(),
-                space.clone(),
-                friction.to_bits(),
-            );
-            let run = (row.key.method.clone(), row.key.increment);
-            let known = row.quantity.error.is_finite();
-            match seen.iter().find(|(own, _)| *own == problem) {
-                Some((_, own)) => known && *own == run,
-                None if known => {
-                    seen.push((problem, run));
-                    true
-                }
-                None => false,
-            }
-        });
-        rows
+        let mut seen = BTreeSet::new();
+        let estimated =
+            |record: &&Record| record.found.exact && record.found.energy_error.is_some();
+        let ends = self
+            .records()
+            .filter(estimated)
+            .filter_map(|record| IncrementRow::of(record).last());
+        let first = ends.filter(|row| seen.insert(row.key.problem()));
+        first
+            .flat_map(of_increment)
+            .filter(|row| row.quantity.error.is_finite())
+            .collect()
     }
 
     /// Recorded iterations of every increment.
@@ -176,4 +155,14 @@ impl Results {
     pub fn as_expected(&self) -> bool {
         self.failures() == 0 && self.expectations.iter().all(ExpectRow::as_stated)
     }
+}
+
+/// Quantities of interest at the end of an increment.
+fn of_increment<'a>(
+    IncrementRow { key, step, .. }: IncrementRow<'a>,
+) -> impl Iterator<Item = QuantityRow<'a>> {
+    step.quantities.iter().map(move |quantity| QuantityRow {
+        key: key.clone(),
+        quantity,
+    })
 }

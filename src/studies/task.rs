@@ -202,6 +202,8 @@ pub struct Looks {
     pub fields: bool,
     /// The distance from the closed form at the end of the path, or the quantities of interest where there is none.
     pub truth: bool,
+    /// The quantities of interest at the end of the path beside a closed form too.
+    pub values: bool,
     /// The distance from the converged solution.
     pub error: bool,
     /// The time that tables and fields take.
@@ -219,6 +221,14 @@ pub struct Looks {
 }
 
 impl Looks {
+    /// The closed form, or the quantities of interest where there is none.
+    pub fn truth() -> Self {
+        Self {
+            truth: true,
+            ..Self::default()
+        }
+    }
+
     /// Whether all that others ask for was looked at.
     pub fn cover(&self, asked: Self) -> bool {
         let has = |own: bool, asked: bool| own || !asked;
@@ -226,6 +236,7 @@ impl Looks {
             && has(self.curves, asked.curves)
             && has(self.fields, asked.fields)
             && has(self.truth, asked.truth)
+            && has(self.values, asked.values)
             && has(self.error, asked.error)
             && has(self.output, asked.output)
             && has(self.why, asked.why)

@@ -286,7 +286,7 @@ fn errors(field: &Griffith, cells: usize, tractions: Tractions, stress: &str) ->
             body_force: &|_, _| [0.0; 3],
             initial_stress: [[0.0; 3]; 3],
         };
-        let found = tip_intensities(&body, &surface, &tip, [&now.u, &now.p], &loads).unwrap();
+        let found = tip_intensities(&body, &surface, &tip, [&now.u, &now.p], &loads, 1).unwrap();
         let (jump, integral) = (found.jumps[0], found.integrals[0]);
         let size = exact[0].hypot(exact[1]);
         for (worst, k) in worst.iter_mut().zip([[jump[0], jump[1]], integral]) {

@@ -37,7 +37,7 @@ pub(super) fn rows(
             body_force: &body_force,
             initial_stress: [[0.0; 3]; 3],
         };
-        let found = tip_intensities(body, surface, &tip, [&now.u, &now.p], &loads)?;
+        let found = tip_intensities(body, surface, &tip, [&now.u, &now.p], &loads, 1)?;
         let jump = found.jumps.first().copied().unwrap_or([f64::NAN; 3]);
         let interaction = found.integrals.first().copied().unwrap_or([f64::NAN; 2]);
         let mut pairs = vec![

@@ -35,7 +35,7 @@ named! {
 
 /// Quantities whose errors are alike.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum Group {
     /// Dissipation, slips, gaps: beside their own value.
     Face,
     /// Energy and forces: small beside those of the whole body, whatever their own value.
@@ -57,18 +57,18 @@ pub struct Course<'a> {
 }
 
 impl Course<'_> {
-    fn kind(&self) -> Kind {
+    fn group(&self) -> Group {
         match self.quantity {
-            "strain_energy" | "reaction" | "contact_force" => Kind::Global,
-            "stress_intensity" | "energy_release_rate" => Kind::Tip,
-            _ => Kind::Face,
+            "strain_energy" | "reaction" | "contact_force" => Group::Global,
+            "stress_intensity" | "energy_release_rate" => Group::Tip,
+            _ => Group::Face,
         }
     }
 
     /// Reference of its changes.
     fn size(&self) -> f64 {
-        match (self.points.last(), self.kind()) {
-            (Some([_, value]), Kind::Face) => value.abs(),
+        match (self.points.last(), self.group()) {
+            (Some([_, value]), Group::Face) => value.abs(),
             _ => self.scale,
         }
     }
@@ -99,15 +99,15 @@ pub fn error_bars(courses: &[Course<'_>], regularity: Regularity) -> Vec<Result<
         Regularity::Smooth | Regularity::FixedRadius => FACTOR,
         Regularity::Tip => FACTOR_OF_TIPS,
     };
-    let typical = [Kind::Face, Kind::Global, Kind::Tip].map(|kind| {
-        let own = courses.iter().filter(|course| course.kind() == kind);
+    let typical = [Group::Face, Group::Global, Group::Tip].map(|group| {
+        let own = courses.iter().filter(|course| course.group() == group);
         let steps = own.filter_map(|course| Some(course.check().ok()?[0] / course.size()));
         // Nothing is relative to a value of 0.
         median(steps.filter(|step| step.is_finite()))
     });
     let bar = |course: &Course<'_>| {
         let [last, before] = course.check()?;
-        let typical = typical[course.kind() as usize] * course.size();
+        let typical = typical[course.group() as usize] * course.size();
         Ok(factor * last.max(before).max(typical))
     };
     courses.iter().map(bar).collect()

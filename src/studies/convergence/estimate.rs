@@ -4,8 +4,9 @@
 //! ```text
 //!   bar of the finer value       see error_bar
 //!   bar of the coarser value     4/3 of it: 2 max(|v₂ − v₁|, m) on halved cells
-//!   energy norm                  ‖u − u_h‖ / ‖u‖ ≈ √(4/3 |E₂ − E₁|/E₂) on the coarser mesh, half of it on the finer one
 //! ```
+//!
+//! The relative error in the energy norm is that of [`orders`] on such a pair of meshes.
 //!
 //! The mesh alone is measured, by one exact method. With friction the energy is no minimum: an estimate, no bound. A case with a
 //! closed form has it for the quantities that it gives.
@@ -13,15 +14,15 @@
 use std::collections::BTreeMap;
 
 use super::error_bar::NoBar;
-use super::orders::{self, ErrorRow};
-use super::{Measured, Sample};
+use super::orders::{self, Kind};
+use super::{Measured, Sample, records};
 use crate::case::Case;
+use crate::model::intensities::MODES;
 use crate::model::quantities::{ESTIMATE, EXACT, Quantity};
 use crate::run::choice::Choice;
 use crate::run::progress::Progress;
-use crate::run::verdict::Accuracy;
-use crate::studies::axes::{Axes, Subject, named};
-use crate::studies::measure::{Bench, RunError, here};
+use crate::studies::axes::Axes;
+use crate::studies::measure::{Bench, RunError};
 use crate::studies::record::Record;
 use crate::studies::results::Results;
 use crate::studies::task::Looks;
@@ -90,23 +91,13 @@ pub fn errors_of_mesh(
         ..Axes::of(case)
     };
     let looks = Looks {
-        truth: true,
-        ..Looks::default()
+        values: true,
+        ..Looks::truth()
     };
-    let (choices, accuracy) = (std::slice::from_ref(choice), Accuracy::of(case, case.tier));
-    let tasks = Subject::given(case).tasks(&axes, &named(choices), &[accuracy], looks);
-    let mut bench = Bench::default();
-    let answers = here(
-        &mut bench,
-        &tasks,
-        choices,
-        1,
-        None,
-        progress,
-        &mut |_, _| (),
-    )?;
+    let (choices, mut bench) = (std::slice::from_ref(choice), Bench::default());
+    let records = records(&mut bench, case, &axes, choices, looks, progress)?;
     let (mut samples, mut all) = (Vec::new(), BTreeMap::<u64, Errors>::new());
-    for record in answers.into_iter().map(|own| own.record) {
+    for record in records {
         let own = all.entry(record.asked.mu().to_bits()).or_default();
         if record.asked.refine == refine {
             for value in &record.found.values {
@@ -130,21 +121,16 @@ pub fn errors_of_mesh(
         }
     }
     let (errors, _) = orders::rows(&samples);
-    for row in errors.iter().filter(|row| row.refine == pair[1]) {
+    for row in &errors {
         let own = all.entry(row.variant.friction.to_bits()).or_default();
-        let place = [row.quantity.clone(), row.at.clone()];
-        let bar = row.no_bar.map_or(Ok(part * row.error_bar), Err);
-        own.bars.insert(place, bar);
-        let coarser = |other: &&ErrorRow| {
-            let same = (&other.quantity, &other.at, &other.variant)
-                == (&row.quantity, &row.at, &row.variant);
-            same && other.refine == pair[0]
-        };
-        let other = errors.iter().find(coarser);
-        if let ("strain_energy", Some(other), None) = (&row.quantity[..], other, own.energy) {
-            let norm = (OF_COARSER * (row.found - other.found).abs() / row.found).sqrt();
-            let here = if refine == pair[0] { norm } else { norm / 2.0 };
-            own.energy = Some((here, ESTIMATE));
+        if row.kind == Some(Kind::Estimate) {
+            if row.refine == refine {
+                own.energy.get_or_insert((row.error, ESTIMATE));
+            }
+        } else if row.refine == pair[1] {
+            let bar = row.no_bar.map_or(Ok(part * row.error_bar), Err);
+            let place = [row.quantity.clone(), row.at.clone()];
+            own.bars.insert(place, bar);
         }
     }
     Ok(all)
@@ -159,22 +145,14 @@ fn place(name: &str, at: &str, dim: Option<usize>) -> Option<[String; 2]> {
     let mode = modes.iter().position(|mode| *mode == name);
     match (name, mode) {
         ("dissipation", _) => Some([name.into(), at.into()]),
-        (_, Some(mode)) => {
-            let component = crate::model::intensities::MODES[mode];
-            Some(["stress_intensity".into(), format!("{at} {component}")])
-        }
+        (_, Some(mode)) => Some(["stress_intensity".into(), format!("{at} {}", MODES[mode])]),
         _ => None,
     }
 }
 
-fn name_and_place(quantity: &Quantity) -> [String; 2] {
-    let at = format!("{} {}", quantity.at, quantity.component);
-    [quantity.name.clone(), at.trim().to_owned()]
-}
-
 impl Errors {
     fn put(&self, quantity: &mut Quantity) {
-        let place = name_and_place(quantity);
+        let place = [quantity.name.clone(), quantity.place()];
         if let Some(exact) = self.exact.get(&place) {
             quantity.error = (quantity.value - exact).abs();
             quantity.error_kind = EXACT.into();

@@ -148,13 +148,11 @@ pub fn rows(samples: &[Sample]) -> (Vec<ErrorRow>, Vec<OrderRow>) {
         own.sort_by(|a, b| b.h.total_cmp(&a.h));
         let unmeasured = own.iter().filter(|s| s.measured == Measured::Nothing);
         errors.extend(unmeasured.map(|sample| unmeasured_row(sample)));
-        let norm = energy_norm(&own);
-        let (found, order) = norm.map_or((Vec::new(), None), |points| {
+        if let Some(points) = energy_norm(&own) {
             let (found, order) = sequence(points, Ok(f64::NAN));
-            (found, Some(order))
-        });
-        errors.extend(found);
-        orders.extend(order);
+            errors.extend(found);
+            orders.push(order);
+        }
         let sequences = sequences(&own);
         let courses: Vec<Course<'_>> = sequences.iter().map(|points| course(points)).collect();
         let bars = error_bars(&courses, own[0].regularity);

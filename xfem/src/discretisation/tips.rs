@@ -22,22 +22,30 @@ pub const FIT_REACH: f64 = 0.25;
 /// The nearest part of the reach is left out, and at least this many cells.
 const FIT_LEFT_OUT: f64 = 0.2;
 const FIT_CELLS_LEFT_OUT: f64 = 1.0;
-/// Radii of the domain of the interaction integral, in cells, the preferred one first.
-const DOMAIN_CELLS: [f64; 3] = [3.0, 2.0, 4.0];
-/// Further reaches of the jump fit, in that of the first.
-const REACHES: [f64; 3] = [1.0, 0.8, 0.6];
-
+/// Radii of the domain of the interaction integral in cells, and reaches of the jump fit in the first; the preferred one first.
+const DOMAIN_CELLS: [f64; WAYS] = [3.0, 2.0, 4.0];
+const REACHES: [f64; WAYS] = [1.0, 0.8, 0.6];
+/// Number of either.
+pub const WAYS: usize = 3;
 /// Points of a 3D front at which intensities are found, evenly spaced in its parameter.
-const FRONT_POINTS: usize = 8;
+pub const FRONT_POINTS: usize = 8;
 /// Samples behind a point of a 3D front.
 const FRONT_SAMPLES: usize = 24;
 
 /// Tips of all cracks, whether they carry branch functions or not.
 pub fn fronts(body: &Discretisation) -> Vec<TipFrame> {
-    let cracks = body.cracks.iter().enumerate();
-    cracks
-        .flat_map(|(index, crack)| placement::fronts(&body.mesh, index, crack))
-        .collect()
+    let of = |(index, crack)| placement::fronts(&body.mesh, index, crack);
+    body.cracks.iter().enumerate().flat_map(of).collect()
+}
+
+/// Place of a tip of a crack, counted from 0.
+pub fn tip_place(crack: &str, tip: usize) -> String {
+    format!("{crack} tip-{}", tip + 1)
+}
+
+/// Place of one of the [`FRONT_POINTS`] of a front, counted from 0.
+pub fn front_place(crack: &str, point: usize) -> String {
+    format!("{crack} front-{}deg", 360 * point / FRONT_POINTS)
 }
 
 /// Tips inside the body with the name of their place, `crack-1 tip-2`; points of a 3D front by their parameter,
@@ -53,8 +61,8 @@ pub fn tip_fronts(body: &Discretisation) -> Vec<(String, TipFrame)> {
         };
         for tip in placement::fronts(&body.mesh, index, crack) {
             let FrontShape::Ellipse(ellipse) = &tip.shape else {
-                let number = known(&tips) + 1;
-                tips.push((format!("{name} tip-{number}"), tip));
+                let place = tip_place(&name, known(&tips));
+                tips.push((place, tip));
                 continue;
             };
             if known(&tips) > 0 {
@@ -70,7 +78,7 @@ pub fn tip_fronts(body: &Discretisation) -> Vec<(String, TipFrame)> {
                     normal: ellipse.normal,
                     shape: FrontShape::Straight,
                 };
-                tips.push((format!("{name} front-{}deg", 360 * k / FRONT_POINTS), local));
+                tips.push((front_place(&name, k), local));
             }
         }
     }
@@ -89,7 +97,7 @@ pub fn crack_size(crack: &Crack) -> f64 {
 /// K_I, K_II[, K_III] at a tip [Pa √m].
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipIntensities {
-    /// By the jump fit over several reaches, the preferred one first; none: too few surface points behind the tip.
+    /// By the jump fit over the preferred reach, in 3D over others too; none: too few surface points behind the tip.
     pub jumps: Vec<[f64; 3]>,
     /// By the interaction integral over the domains that stand alone around the tip, the preferred one first; none in 3D.
     pub integrals: Vec<[f64; 2]>,
@@ -98,26 +106,17 @@ pub struct TipIntensities {
 }
 
 impl TipIntensities {
-    /// The value: by the integral in 2D, by the jump in 3D; how far the others are from it at most, infinite where there are none.
+    /// The value: by the integral in 2D, by the jump in 3D; how far the others are from it at most, not-a-number where there are none.
     pub fn best(&self) -> Option<[[f64; 3]; 2]> {
+        if self.obstacle.is_some() {
+            return None;
+        }
         let integrals = self.integrals.iter().map(|k| [k[0], k[1], 0.0]);
-        let plane = !self.integrals.is_empty() || self.obstacle.is_some();
-        let own: Vec<[f64; 3]> = if plane {
-            integrals
-                .clone()
-                .chain(self.jumps.first().copied())
-                .collect()
-        } else {
-            self.jumps.clone()
-        };
-        let value = if plane {
-            integrals.clone().next()
-        } else {
-            own.first().copied()
-        }?;
+        let own: Vec<[f64; 3]> = integrals.chain(self.jumps.iter().copied()).collect();
+        let value = *own.first()?;
         let apart = |c: usize| {
             let others = own[1..].iter().map(|k| (k[c] - value[c]).abs());
-            others.reduce(f64::max).unwrap_or(f64::INFINITY)
+            others.reduce(f64::max).unwrap_or(f64::NAN)
         };
         Some([value, [0, 1, 2].map(apart)])
     }
@@ -132,7 +131,7 @@ pub struct Loads<'a> {
 }
 
 /// Intensities at a tip from the discrete solution: all unknowns and the contact forces; `surface`: quadrature points of all
-/// crack surfaces.
+/// crack surfaces; `ways`: domains and reaches that are wanted at most, [`WAYS`] for all.
 ///
 /// # Errors
 /// [`CellError`] of a cell that cannot be integrated.
@@ -142,14 +141,13 @@ pub fn tip_intensities(
     tip: &TipFrame,
     [u, p]: [&[f64]; 2],
     loads: &Loads<'_>,
+    ways: usize,
 ) -> Result<TipIntensities, CellError> {
     let integrator = body.integrator();
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
     let crack = &body.cracks[tip.crack];
-    let mut size: f64 = 0.0;
-    for cell in cells_at(mesh, &tip.position) {
-        size = size.max(mesh.map(cell).longest_edge());
-    }
+    let edges = (cells_at(mesh, &tip.position).into_iter()).map(|c| mesh.map(c).longest_edge());
+    let size = edges.fold(0.0, f64::max);
     let ranges = REACHES.map(|part| {
         let to = part * FIT_REACH * crack_size(crack);
         FitRange {
@@ -161,7 +159,7 @@ pub fn tip_intensities(
         let jump = |x: &Point| jump_at(&integrator, tip.crack, x, u);
         let fit = |range| jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump);
         return Ok(TipIntensities {
-            jumps: ranges.into_iter().filter_map(fit).collect(),
+            jumps: ranges.into_iter().filter_map(fit).take(ways).collect(),
             integrals: Vec::new(),
             obstacle: None,
         });
@@ -206,6 +204,9 @@ pub fn tip_intensities(
     };
     let (mut integrals, mut obstacles) = (Vec::new(), Vec::new());
     for cells in DOMAIN_CELLS {
+        if integrals.len() == ways {
+            break;
+        }
         let domain = Domain {
             radius: cells * size,
             fronts: &fronts,
@@ -219,7 +220,7 @@ pub fn tip_intensities(
     }
     let obstacle = obstacles.get(1).copied().filter(|_| integrals.is_empty());
     Ok(TipIntensities {
-        jumps: ranges.into_iter().filter_map(fit).collect(),
+        jumps: ranges.into_iter().filter_map(fit).take(1).collect(),
         integrals,
         obstacle,
     })
