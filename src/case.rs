@@ -29,7 +29,7 @@ pub use mesh::{MeshSpec, Sweep, even_lines};
 pub(crate) use named::named;
 pub use parse::{Case, parse, parse_with, read};
 pub use polynomial::Polynomial;
-pub use settings::{MethodSpec, PathSpec};
+pub use settings::{MethodSpec, PathSpec, Target};
 pub use stickslip_xfem::contact::ContactSpace;
 pub use stickslip_xfem::cut::crack::Tip;
 pub use stickslip_xfem::geometry::crack_shape::CrackShape;

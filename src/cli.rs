@@ -25,6 +25,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use stickslip_methods::Registry;
 
 pub use self::error::CliError;
+use self::output::Form;
 pub use self::output::warn;
 use crate::report::Plan;
 use crate::run::registry::install;
@@ -39,6 +40,12 @@ use crate::run::registry::install;
 pub struct Cli {
     #[command(subcommand)]
     verb: Verb,
+    /// Print nothing but warnings and errors
+    #[arg(long, global = true, conflicts_with = "json")]
+    quiet: bool,
+    /// Print a JSON object per line: every table with all its columns, words as `text`
+    #[arg(long, global = true)]
+    json: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -104,6 +111,11 @@ pub fn program(methods: Registry) -> ExitCode {
 
 /// Runs the command; true if everything was as expected (exit code 0), false otherwise (exit code 1).
 pub fn main(cli: Cli, plan: Plan) -> Result<bool, CliError> {
+    output::FORM.get_or_init(|| match (cli.json, cli.quiet) {
+        (true, _) => Form::Json,
+        (_, true) => Form::Nothing,
+        _ => Form::Text,
+    });
     match cli.verb {
         Verb::Paper(arguments) => paper::run(arguments, plan),
         Verb::Run(arguments) => run::run(arguments, plan),

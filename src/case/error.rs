@@ -17,6 +17,9 @@ pub type Span = Range<usize>;
 /// Longest value, key or source line printed, in characters: a megabyte of garbage must not flood a terminal.
 const WIDTH: usize = 80;
 
+/// Most further faults printed.
+const SHOWN: usize = 9;
+
 /// Depth to which keys are named in messages; the format itself is at most five levels deep.
 const DEPTH: usize = 8;
 
@@ -39,9 +42,32 @@ struct Complaint {
     value: String,
     allowed: String,
     message: String,
+    more: Vec<CaseError>,
 }
 
 impl CaseError {
+    /// All of some faults as one, in the order of the file; what several say is said once.
+    ///
+    /// # Errors
+    /// If there are any.
+    pub(crate) fn all(faults: impl IntoIterator<Item = Self>) -> Result<(), Self> {
+        let mut all: Vec<Self> = faults.into_iter().flat_map(Self::faults).collect();
+        all.sort_by_key(|own| (own.line(), own.column()));
+        all.dedup_by(|a, b| a.to_string() == b.to_string());
+        let mut all = all.into_iter();
+        let Some(mut first) = all.next() else {
+            return Ok(());
+        };
+        first.0.more = all.collect();
+        Err(first)
+    }
+
+    /// The faults of the file, each by itself.
+    pub fn faults(mut self) -> Vec<Self> {
+        let more = std::mem::take(&mut self.0.more);
+        std::iter::once(self).chain(more).collect()
+    }
+
     /// File as given by the caller.
     pub fn file(&self) -> &Path {
         &self.0.file
@@ -113,7 +139,12 @@ impl fmt::Display for CaseError {
         if !c.source_line.is_empty() {
             write!(f, "\n    {}\n    {}", c.source_line, c.underline)?;
         }
-        Ok(())
+        let shown = c.more.iter().take(SHOWN);
+        shown.clone().try_for_each(|own| write!(f, "\n{own}"))?;
+        match c.more.len() - shown.len() {
+            0 => Ok(()),
+            left => write!(f, "\nand {left} more faults"),
+        }
     }
 }
 
@@ -155,6 +186,7 @@ impl Source<'_> {
             value: clip(&value.to_string()),
             allowed: visible::excerpt(&allowed.to_string(), 4 * WIDTH),
             message: visible::excerpt(&message.to_string(), 4 * WIDTH),
+            more: Vec::new(),
         }))
     }
 

@@ -16,7 +16,7 @@ use super::expect::{Expect, ProbeSpec, Runs};
 use super::load::{LoadSpec, Scene, SupportSpec, load, support};
 use super::mesh::{MeshSpec, Sweep, mesh, sweep};
 use super::reader::{Table, Value};
-use super::settings::{self, MethodSpec, PathSpec};
+use super::settings::{self, MethodSpec, PathSpec, Target};
 use crate::files::regular;
 use crate::files::visible::visible;
 
@@ -57,9 +57,9 @@ pub struct Case {
     pub sweep: Sweep,
     /// Methods the case runs when the command line names none: (registry name, options as `key=value` pairs).
     pub methods: Vec<MethodSpec>,
-    /// Default tier of the case.
-    pub tier: Tier,
-    /// Natural map the methods must reach, at most that of the tier; tighter where a closed form is held to more digits.
+    /// Accuracy of the case.
+    pub target: Target,
+    /// Violation the methods must reach, at most that of the tier; tighter where a closed form is held to more digits.
     pub tolerance: f64,
     /// Named places whose displacement is recorded.
     pub probes: Vec<ProbeSpec>,
@@ -135,7 +135,7 @@ const KEYS: [&str; 16] = [
 /// Reads and checks a case file; the file stem becomes the name of the case.
 ///
 /// # Errors
-/// The first fault found, with its place: a file that cannot be read, is larger than 1 MiB or not UTF-8, text that is
+/// All faults that do not follow from each other, of a table the first, with their places: a file that cannot be read, is larger than 1 MiB or not UTF-8, text that is
 /// not TOML, unknown or missing keys, wrong types, numbers that are not finite or out of range, contradictions.
 pub fn read(path: impl AsRef<Path>) -> Result<Case, CaseError> {
     let path = path.as_ref();
@@ -236,59 +236,71 @@ pub(crate) fn document<T>(
 
 /// Everything the document says; name, file and source are filled in by the caller.
 fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result<Case, CaseError> {
-    let title = root.required("title")?.label()?;
     let model = root.required("model")?.one_of(&[
         ("plane-strain", Model::PlaneStrain),
         ("plane-stress", Model::PlaneStress),
         ("solid", Model::Solid),
     ])?;
     let dim = model.dim();
-    let tier = root.get("tier").map_or(Ok(Tier::High), |v| {
-        v.one_of(&Tier::ALL.map(|tier| (tier.as_str(), tier)))
-    })?;
-    let tolerance = root.get("tolerance").map_or(Ok(tier.tolerance()), |v| {
-        let allowed = format!(
-            "1e-14 <= tolerance <= {:e}, that of the tier",
-            tier.tolerance()
-        );
-        v.number_if(&allowed, |t| (1e-14..=tier.tolerance()).contains(&t))
-    })?;
-    let quadrature = settings::quadrature(root)?;
-    let (material, dilatation) = settings::material(root, model)?;
-    let mesh = mesh(root, dim)?;
-    let sweep = sweep(root, &mesh)?;
-    let path = settings::path(root)?;
-    let cracks = each(root, "crack", |v| crack(v, dim))?;
-    let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
-    let mut runs = Runs::new(dim, &frictions, &sweep, &path);
-    let exact = exact(root, solutions, cracks.len())?;
     let scene = Scene {
         dim,
-        cracks: cracks.len(),
-        exact: exact.is_some(),
+        cracks: root.tables("crack")?.len(),
+        exact: root.get("exact").is_some(),
     };
-    let probes = each(root, "probe", |v| runs.probe(v, dim))?;
+    // What does not build on a fault is read all the same, so that all faults are told at once.
+    let title = root.required("title").and_then(|v| v.label());
+    let accuracy = accuracy(root);
+    let quadrature = settings::quadrature(root);
+    let material = settings::material(root, model);
+    let mesh = mesh(root, dim);
+    let on_mesh = mesh.as_ref().map_err(Clone::clone);
+    let sweep = on_mesh.and_then(|mesh| sweep(root, mesh));
+    let path = settings::path(root);
+    let cracks = each(root, "crack", |v| crack(v, dim));
+    let exact = exact(root, solutions, scene.cracks);
+    let supports = each(root, "support", |v| support(v, &scene));
+    let loads = each(root, "load", |v| load(v, &scene));
+    let methods = each(root, "method", settings::method);
+    let faults = [
+        fault(&title),
+        fault(&accuracy),
+        fault(&quadrature),
+        fault(&material),
+        fault(&mesh),
+        fault(&sweep),
+        fault(&path),
+        fault(&cracks),
+        fault(&exact),
+        fault(&supports),
+        fault(&loads),
+        fault(&methods),
+    ];
+    CaseError::all(faults.into_iter().flatten())?;
+    let (sweep, path, cracks) = (sweep?, path?, cracks?);
+    let ((target, tolerance), (material, dilatation)) = (accuracy?, material?);
+    let frictions: Vec<f64> = cracks.iter().map(|c| c.friction).collect();
+    let mut runs = Runs::new(dim, &frictions, &sweep, &path);
     let case = Case {
         name: String::new(),
         file: PathBuf::new(),
         source: String::new(),
-        title,
+        title: title?,
         model,
         material,
         dilatation,
         origin: [0.0; 3],
-        mesh,
+        mesh: mesh?,
         cracks,
-        supports: each(root, "support", |v| support(v, &scene))?,
-        loads: each(root, "load", |v| load(v, &scene))?,
-        exact,
-        quadrature,
+        supports: supports?,
+        loads: loads?,
+        exact: exact?,
+        quadrature: quadrature?,
         path,
         sweep,
-        methods: each(root, "method", settings::method)?,
-        tier,
+        methods: methods?,
+        target,
         tolerance,
-        probes,
+        probes: each(root, "probe", |v| runs.probe(v, dim))?,
         expects: each(root, "expect", |v| runs.expect(v))?,
     };
     // Runs that differ in nothing would write files of one name.
@@ -299,13 +311,45 @@ fn read_document(root: &Table<'_>, solutions: &'static [SolutionSpec]) -> Result
     Ok(case.in_frame())
 }
 
+/// `tier` and `tolerance`.
+fn accuracy(root: &Table<'_>) -> Result<(Target, f64), CaseError> {
+    let target = root
+        .get("tier")
+        .map_or(Ok(Target::Tier(Tier::High)), |v| v.one_of(&Target::ALL))?;
+    let largest = target.tier().tolerance();
+    let tolerance = root.get("tolerance").map_or(Ok(largest), |v| {
+        let allowed = format!("1e-14 <= tolerance <= {largest:e}, that of the tier");
+        v.number_if(&allowed, |t| (1e-14..=largest).contains(&t))
+    })?;
+    Ok((target, tolerance))
+}
+
+/// What is wrong with it, if anything.
+pub(crate) fn fault<T>(read: &Result<T, CaseError>) -> Option<CaseError> {
+    read.as_ref().err().cloned()
+}
+
 /// Tables of an array of tables, in file order.
 fn each<T>(
     root: &Table<'_>,
     key: &str,
     read: impl FnMut(Value<'_>) -> Result<T, CaseError>,
 ) -> Result<Vec<T>, CaseError> {
-    root.tables(key)?.into_iter().map(read).collect()
+    faultless(root.tables(key)?.into_iter().map(read))
+}
+
+/// What was read, or all its faults.
+pub(crate) fn faultless<T>(
+    read: impl IntoIterator<Item = Result<T, CaseError>>,
+) -> Result<Vec<T>, CaseError> {
+    let (mut good, mut faults) = (Vec::new(), Vec::new());
+    for own in read {
+        match own {
+            Ok(own) => good.push(own),
+            Err(fault) => faults.push(fault),
+        }
+    }
+    CaseError::all(faults).map(|()| good)
 }
 
 /// Splits the parser's `what, expected this` into message and allowed text.

@@ -1,10 +1,59 @@
 //! Short parts of a case: quadrature, material, load path, methods.
 
+use std::fmt::{self, Display, Formatter};
+use std::str::FromStr;
+
+use stickslip_methods::Tier;
 use stickslip_xfem::material::{Dilatation, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
 
 use super::error::{CaseError, Span};
 use super::reader::{Table, Value};
+
+/// Accuracy asked for, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// A tier.
+    Tier(Tier),
+    /// A tenth of the error of the mesh.
+    Mesh,
+}
+
+impl Target {
+    /// Its names.
+    pub const ALL: [(&str, Self); 4] = [
+        ("low", Self::Tier(Tier::Low)),
+        ("mid", Self::Tier(Tier::Mid)),
+        ("high", Self::Tier(Tier::High)),
+        ("mesh", Self::Mesh),
+    ];
+
+    /// The tier, also where nothing is known of the mesh.
+    pub fn tier(self) -> Tier {
+        match self {
+            Self::Tier(tier) => tier,
+            Self::Mesh => Tier::High,
+        }
+    }
+}
+
+impl FromStr for Target {
+    type Err = &'static str;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let known = Self::ALL.into_iter().find(|own| own.0 == name);
+        known.map(|own| own.1).ok_or("known: low, mid, high, mesh")
+    }
+}
+
+impl Display for Target {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tier(tier) => tier.fmt(f),
+            Self::Mesh => f.write_str("mesh"),
+        }
+    }
+}
 
 /// Load path: times t_k = end · k / increments, k = 1..=increments.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -100,7 +100,7 @@ pub fn only<'a>(mut names: impl Iterator<Item = &'a str>, verb: &'a str) -> &'a 
 }
 
 /// Options that say where and how something is done, not what.
-const HOW: [&str; 4] = ["out", "force", "jobs", "repeats"];
+const HOW: [&str; 6] = ["out", "force", "jobs", "repeats", "quiet", "json"];
 
 /// Largest file whose contents stand in a plan [bytes]: of larger ones there is the name alone.
 const DIGESTED: u64 = 64 << 20;

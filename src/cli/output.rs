@@ -3,18 +3,45 @@
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde_json::json;
 
 use crate::files::visible::visible;
 use crate::report::standard;
-use crate::report::table::{Row, readable};
+use crate::report::table::{Row, objects, readable};
 use crate::studies::results::Results;
 
 /// Whether some line could not be printed.
 pub static LOST: AtomicBool = AtomicBool::new(false);
 
-/// Prints a line. A reader that has left has seen what it wanted; a disk that is full has not.
+/// Form of what standard output is told.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Form {
+    /// Words and tables.
+    #[default]
+    Text,
+    /// A JSON object per line: a table with all columns of its file, or words.
+    Json,
+    /// Nothing.
+    Nothing,
+}
+
+/// That of this process, settled by its first arguments.
+pub static FORM: OnceLock<Form> = OnceLock::new();
+
+/// Prints words.
 pub fn say(text: Arguments<'_>) {
+    match FORM.get_or_init(Form::default) {
+        Form::Text => print(text),
+        Form::Json => print(format_args!("{}", json!({ "text": text.to_string() }))),
+        Form::Nothing => {}
+    }
+}
+
+/// Prints a line. A reader that has left has seen what it wanted; a disk that is full has not.
+fn print(text: Arguments<'_>) {
     let mut out = std::io::stdout().lock();
     let said = writeln!(out, "{}", lines(text)).and_then(|()| out.flush());
     if said.is_err_and(|e| e.kind() != ErrorKind::BrokenPipe) {
@@ -24,7 +51,13 @@ pub fn say(text: Arguments<'_>) {
 
 /// Prints a table.
 pub fn show<R: Row>(rows: &[R], note: &str) {
-    say(format_args!("{}", readable(rows, note).terminal()));
+    match FORM.get_or_init(Form::default) {
+        Form::Json => print(format_args!(
+            "{}",
+            json!({ "table": R::NAME, "rows": objects(rows) })
+        )),
+        _ => say(format_args!("{}", readable(rows, note).terminal())),
+    }
 }
 
 /// Prints what runs came to and where it lies; true if all is as expected.

@@ -1,26 +1,34 @@
 //! Progress of a command.
 
 use std::io::IsTerminal;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::output::warn;
+use super::output::{FORM, Form, warn};
 use crate::run::progress::Progress;
 
-/// A progress bar with the remaining time on a terminal; in a pipe nothing, or a line per run.
+/// Where nobody sees the bar, time between two lines [s].
+const BETWEEN_S: f64 = 5.0;
+
+/// A progress bar with the remaining time on a terminal; in a pipe now and then a line, or one per run.
 pub struct Bar {
     bar: ProgressBar,
-    lines: bool,
+    /// Time between two lines [s]; none on a terminal.
+    between_s: Option<f64>,
+    told: Mutex<Instant>,
     planned: AtomicUsize,
     done: AtomicUsize,
 }
 
 impl Bar {
-    /// An empty bar, silent in a pipe.
+    /// An empty bar.
     pub fn new() -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let bar = if terminal {
+        let quiet = *FORM.get_or_init(Form::default) == Form::Nothing;
+        let bar = if terminal && !quiet {
             ProgressBar::new(0)
         } else {
             ProgressBar::hidden()
@@ -32,7 +40,8 @@ impl Bar {
         }
         Self {
             bar,
-            lines: false,
+            between_s: (!terminal && !quiet).then_some(BETWEEN_S),
+            told: Mutex::new(Instant::now()),
             planned: AtomicUsize::new(0),
             done: AtomicUsize::new(0),
         }
@@ -40,9 +49,10 @@ impl Bar {
 
     /// An empty bar that prints a line per run on standard error where that is a pipe.
     pub fn with_lines() -> Self {
+        let new = Self::new();
         Self {
-            lines: !std::io::stderr().is_terminal(),
-            ..Self::new()
+            between_s: new.between_s.map(|_| 0.0),
+            ..new
         }
     }
 
@@ -60,9 +70,12 @@ impl Progress for Bar {
 
     fn done(&self, label: &str) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        if self.lines {
+        if let (Some(between), Ok(mut told)) = (self.between_s, self.told.lock())
+            && told.elapsed().as_secs_f64() >= between
+        {
             let planned = self.planned.load(Ordering::Relaxed);
             warn(format_args!("[{done}/{planned}] {label}"));
+            *told = Instant::now();
         }
         self.bar.set_message(label.to_owned());
         self.bar.inc(1);

@@ -1,17 +1,15 @@
 //! `stickslip run`: cases.
 
-use stickslip_methods::Tier;
-
 use super::advice;
 use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::{conclude, show};
 use super::progress::Bar;
+use crate::case::Target;
 use crate::report::{Plan, add_input, page, standard};
-use crate::run::choice::{Choice, choices};
+use crate::run::choice::choices;
 use crate::studies::axes::Subject;
 use crate::studies::cases::{Fields, Settings, Why, run_case};
-use crate::studies::convergence::estimate;
 use crate::studies::expect;
 use crate::studies::results::Results;
 
@@ -24,9 +22,9 @@ pub struct Arguments {
     /// Method with options, NAME or NAME:key=value,key=value; may be repeated
     #[arg(long, short)]
     method: Vec<String>,
-    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9); the case's own by default
+    /// Accuracy: low, mid or high (contact laws violated by at most 1e-3, 1e-6, 1e-9), or mesh (a tenth of the error of the mesh, with what that saves); the case's own by default
     #[arg(long)]
-    tier: Option<Tier>,
+    tier: Option<Target>,
     /// Methods whose fields are written for pictures: none, first (the first exact method) or all
     #[arg(long, value_enum, default_value = "first")]
     fields: FieldsOf,
@@ -48,9 +46,6 @@ pub struct Arguments {
     limit: ProgramLimit,
 }
 
-/// Method that errors of meshes are estimated by.
-const REFERENCE: &str = "hybrid";
-
 /// Values of `--fields`.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum FieldsOf {
@@ -63,6 +58,7 @@ enum FieldsOf {
 pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let settings = Settings {
         tier: arguments.tier,
+        error: arguments.error,
         jobs: usize::from(arguments.jobs),
         fields: match arguments.fields {
             FieldsOf::None => Fields::None,
@@ -92,11 +88,7 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
     let bar = Bar::new();
     let mut results = Results::default();
     for case in &cases {
-        let mut own = run_case(case, &given, settings, &bar)?;
-        if arguments.error {
-            estimate(case, &Choice::parse(REFERENCE)?, &mut own, &bar)?;
-        }
-        results.append(own);
+        results.append(run_case(case, &given, settings, &bar)?);
     }
     bar.finish();
     cases

@@ -10,6 +10,7 @@ use super::arguments::{
 use super::error::CliError;
 use super::output::{conclude, show};
 use super::progress::Bar;
+use crate::case::Target;
 use crate::report::tables::problems::of_files;
 use crate::report::{Bundle, Plan, names, standard, table};
 use crate::run::verdict::{Accuracy, Verdict};
@@ -125,7 +126,7 @@ pub fn run(args: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     mark_several(&mut results.answers);
     bar.finish();
     let settings = Settings {
-        tier: Some(args.tier),
+        tier: Some(Target::Tier(args.tier)),
         why: Why::Cause,
         ..Settings::PLAIN
     };

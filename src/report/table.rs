@@ -108,6 +108,16 @@ pub fn csv<R: Row>(rows: &[R]) -> Result<Vec<u8>, ReportError> {
     })
 }
 
+/// The rows as JSON objects with the columns of the CSV file, sorted; what is no number, `null`.
+pub fn objects<R: Row>(rows: &[R]) -> Vec<serde_json::Map<String, serde_json::Value>> {
+    let (columns, rows) = (R::columns(), sorted(rows));
+    let of = |row: &&R| {
+        let cell = |column: &Column<R>| (column.about.name.to_owned(), column.json(row));
+        columns.iter().map(cell).collect()
+    };
+    rows.iter().map(of).collect()
+}
+
 /// A header and so many lines, each filled in when its turn comes; compiled once, like [`ordered`].
 fn write(
     header: Vec<String>,

@@ -36,9 +36,14 @@ impl Accuracy {
         }
     }
 
+    /// That of the case.
+    pub fn own(case: &Case) -> Self {
+        Self::of(case, case.target.tier())
+    }
+
     /// A tier on a case: its own tier asks for its own tolerance, any other replaces that.
     pub fn of(case: &Case, tier: Tier) -> Self {
-        let asked = if tier == case.tier {
+        let asked = if tier == case.target.tier() {
             case.tolerance
         } else {
             tier.tolerance()

@@ -11,7 +11,7 @@ mod power_law;
 mod sample;
 
 pub use error_bar::NoBar;
-pub use estimate::{Errors, errors_of_mesh, estimate};
+pub use estimate::{Errors, OfMeshes, errors_of_mesh, estimate, of_problem, put};
 pub use power_law::slope;
 pub use sample::{Measured, Sample, Variant};
 
@@ -133,7 +133,7 @@ pub fn records(
     looks: Looks,
     progress: &dyn Progress,
 ) -> Result<Vec<Record>, RunError> {
-    let accuracy = [Accuracy::of(case, case.tier)];
+    let accuracy = [Accuracy::own(case)];
     let tasks = Subject::given(case).tasks(axes, &named(choices), &accuracy, looks);
     let answers = here(bench, &tasks, choices, 1, None, progress, &mut |_, _| ())?;
     Ok(answers.into_iter().map(|own| own.record).collect())

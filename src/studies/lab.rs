@@ -59,7 +59,11 @@ pub fn reply(bench: &mut Bench, request: Request) -> Result<Reply, Verdict> {
     task.matter = request.matter.into();
     Ok(match request.repeats {
         None => Reply::Measured(Box::new(bench.record(&task, choice)?)),
-        Some(repeats) => Reply::Timed(in_turn(&bench.scene(&task)?, &task, &choices, repeats)),
+        Some(repeats) => {
+            let asked = request.tasks.iter().map(|task| &task.asked);
+            let tasks: Vec<_> = asked.zip(&choices).collect();
+            Reply::Timed(in_turn(&bench.scene(&task)?, &tasks, repeats))
+        }
     })
 }
 

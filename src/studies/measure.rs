@@ -160,13 +160,13 @@ pub fn here(
         };
         let mut own = own?;
         if let Some(repeats) = repeats {
-            let honest = own.iter_mut().filter(|own| own.record.is_honest());
-            let honest: Vec<&mut Answer> = honest.collect();
-            let methods = honest.iter().map(|own| own.record.asked.method.as_str());
-            let methods: Vec<Choice> = methods.filter_map(by_name).cloned().collect();
-            let times = in_turn(&scene, first, &methods, repeats);
-            for (own, times) in honest.into_iter().zip(times) {
-                own.record = own.record.clone().retimed(times);
+            let honest = (0..own.len()).filter(|&k| own[k].record.is_honest());
+            let honest: Vec<usize> = honest.collect();
+            let asked = honest.iter().map(|&k| &own[k].record.asked);
+            let tasks = asked.filter_map(|asked| Some((asked, by_name(&asked.method)?)));
+            let times = in_turn(&scene, &tasks.collect::<Vec<_>>(), repeats);
+            for (k, times) in honest.into_iter().zip(times) {
+                own[k].record = own[k].record.clone().retimed(times);
             }
         }
         answers.extend(own);

@@ -29,7 +29,7 @@ use std::path::Path;
 use stickslip_methods::Tier;
 
 use crate::case::error::CaseError;
-use crate::case::parse::{document, read_text};
+use crate::case::parse::{document, fault, faultless, read_text};
 use crate::case::reader::Value;
 use crate::run::choice::Choice;
 use crate::run::verdict::Accuracy;
@@ -65,7 +65,7 @@ impl Plan {
     /// Reads a sweep file.
     ///
     /// # Errors
-    /// The first fault, with its place.
+    /// All faults, of a table the first, with their places.
     pub fn read(path: &Path) -> Result<Self, CaseError> {
         Self::parse(path, &read_text(path)?)
     }
@@ -73,21 +73,26 @@ impl Plan {
     /// The same for the text of a sweep file; cases are looked for beside `file`.
     ///
     /// # Errors
-    /// The first fault, with its place.
+    /// All faults, of a table the first, with their places.
     pub fn parse(file: &Path, text: &str) -> Result<Self, CaseError> {
         let keys = ["title", "repeats", "cells"];
         let folder = file.parent().unwrap_or(Path::new(""));
         document(file, text, &keys, |root| {
-            let title = root.required("title")?.label()?;
-            let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats)?;
+            let title = root.required("title").and_then(|v| v.label());
+            let repeats = root.get("repeats").map_or(Ok(Repeats::DEFAULT), repeats);
             let blocks = root.tables("cells")?;
             if blocks.is_empty() {
                 return Err(root.missing("`[[cells]]`"));
             }
-            let (mut quota, mut tasks) = (Quota::default(), Vec::new());
-            for value in blocks {
-                tasks.extend(block(value, folder, &mut quota)?);
-            }
+            let mut quota = Quota::default();
+            let own = blocks
+                .into_iter()
+                .map(|value| block(value, folder, &mut quota));
+            let own = faultless(own);
+            let faults = [fault(&title), fault(&repeats), fault(&own)];
+            CaseError::all(faults.into_iter().flatten())?;
+            let (title, repeats) = (title?, repeats?);
+            let tasks = own?.into_iter().flatten().collect();
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             let input = vec![(name.into_owned(), text.to_owned())];
             Ok(Self::of(title, repeats, input, tasks))

@@ -8,7 +8,7 @@ use stickslip_methods::{PointStatus, Residuals};
 
 use crate::files::nan;
 use crate::model::errors::Deviation;
-use crate::model::quantities::Quantity;
+use crate::model::quantities::{EXACT, Quantity};
 use crate::model::snapshot::Snapshot;
 use crate::run::judged::{JudgedIncrement, Seconds, Work};
 use crate::run::verdict::Verdict;
@@ -44,6 +44,9 @@ pub struct Record {
     /// Times and memory.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spent: Option<Spent>,
+    /// The same asked for the accuracy of the case, where the error of the mesh decides.
+    #[serde(skip)]
+    pub beside: Option<Box<Record>>,
 }
 
 impl Record {
@@ -63,7 +66,18 @@ impl Record {
             limits: None,
             found,
             spent,
+            beside: None,
         }
+    }
+
+    /// Relative error of the mesh in the energy norm at the end of the path with its kind.
+    pub fn discretisation_error(&self) -> Option<(f64, &str)> {
+        let energy = |d: &&Deviation| d.quantity == "energy" && d.at.is_empty();
+        let exact = self.found.deviations.iter().find(energy);
+        let estimate = self.found.energy_error.as_ref();
+        exact
+            .map(|own| (own.error, EXACT))
+            .or_else(|| estimate.map(|(error, kind)| (*error, kind.as_str())))
     }
 
     /// Keeps what was to be looked at: more was gathered on the way.

@@ -211,6 +211,33 @@ fn run_writes_its_tables_shows_them_and_is_silent_on_standard_error() {
 }
 
 #[test]
+fn a_run_is_told_as_json_or_not_at_all() {
+    let dir = folder(0.0);
+    let run = |form: &str| {
+        ends_with(
+            0,
+            &["run", "small.toml", "-m", "nsgs", form, "--out", &form[2..]],
+            dir.path(),
+        )
+    };
+    let [(told, complaints), (nothing, more)] = ["--json", "--quiet"].map(run);
+    assert!(nothing.is_empty() && complaints.is_empty() && more.is_empty());
+    let told = told.lines().map(|line| serde_json::from_str(line).unwrap());
+    let told: Vec<serde_json::Value> = told.collect();
+    let runs = told.iter().find(|own| own["table"] == "runs").unwrap();
+    let file = csv_rows(&text(&files(dir.path())["json/runs.csv"]));
+    for (name, cell) in &file[0] {
+        let value = &runs["rows"][0][name];
+        let same = match value {
+            serde_json::Value::Null => ["", "NaN"].contains(&cell.as_str()),
+            serde_json::Value::String(words) => words == &cell[..],
+            number => number.as_f64() == cell.parse().ok(),
+        };
+        assert!(same, "{name}: {value} {cell}");
+    }
+}
+
+#[test]
 fn a_missed_expectation_ends_with_1_and_is_named() {
     let dir = folder(3.0);
     let arguments = ["run", "small.toml", "--method", "b-newton", "--out", "out"];

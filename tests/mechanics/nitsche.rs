@@ -1,7 +1,7 @@
 //! Nitsche's method on bodies with stress: exact where the stress is uniform, close to the multipliers elsewhere.
 
 use crate::common::*;
-use stickslip::case::{Case, Expect, Tolerance, shipped};
+use stickslip::case::{Case, Expect, Target, Tolerance, shipped};
 use stickslip::model::body::{Body, Needs};
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
@@ -405,7 +405,7 @@ fn too_little_stabilisation_is_refused_with_the_bound() {
 #[test]
 fn a_consistency_term_is_never_taken_for_equilibrium() {
     let settings = Settings {
-        tier: Some(Tier::Low),
+        tier: Some(Target::Tier(Tier::Low)),
         ..SETTINGS
     };
     let case = shipped("plate_mesh1");

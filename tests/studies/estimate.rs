@@ -1,12 +1,14 @@
 //! Errors that are estimated from a second mesh, against closed forms and conforming elements.
 
 use crate::common::*;
-use stickslip::case::shipped;
+use stickslip::case::{Target, shipped};
 use stickslip::model::quantities::{ESTIMATE, EXACT};
+use stickslip::report::standard::runs;
+use stickslip::report::table::csv;
 use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::studies::cases::{Settings, run_case};
-use stickslip::studies::convergence::{errors_of_mesh, estimate};
+use stickslip::studies::convergence::errors_of_mesh;
 
 fn hybrid() -> Choice {
     Choice::parse("hybrid").unwrap()
@@ -57,20 +59,45 @@ fn bars_hold_closed_forms() {
     assert!(all > 40 && 10 * held >= 9 * all, "{held} of {all}");
 }
 
+/// Goal: at tier `mesh` a method stops early, what it saves and what it loses stand in its row, and the total error rises by no more
+/// than 1 %. Where the mesh has no error nothing is lost.
+#[test]
+fn methods_stop_at_the_error_of_the_mesh() {
+    for (name, early) in [("crossing_cracks", true), ("sloped_patch", false)] {
+        let case = shipped::find(name).unwrap().unwrap();
+        let settings = Settings {
+            tier: Some(Target::Mesh),
+            ..Settings::PLAIN
+        };
+        let choices = [hybrid(), Choice::parse("nsgs").unwrap()];
+        let results = run_case(&case, &choices, settings, &Quiet).unwrap();
+        assert!(results.as_expected() && results.answers.len() == 2);
+        let table = String::from_utf8(csv(&runs(&results)).unwrap()).unwrap();
+        for row in csv_rows(&table) {
+            let number = |column: &str| row[column].parse::<f64>().unwrap();
+            let saved = number("iterations_saved");
+            assert_eq!(saved > 0.0, early && row["method"] == "nsgs", "{row:?}");
+            let [total, fine] = ["total_error", "total_error_fine"].map(number);
+            assert!(total <= 1.01 * fine, "{name}: {total} {fine}");
+            assert_eq!(number("tolerance") > 1e-9, early);
+        }
+    }
+}
+
 /// Source: `cases/crossing_cracks.toml`, by conforming elements. Goal: of a run its errors stand beside its quantities, those of a
 /// closed form as what they are.
 #[test]
 fn a_run_has_the_errors_of_its_mesh() {
     let errors = |name: &str| {
         let case = shipped::find(name).unwrap().unwrap();
-        let mut results = run_case(&case, &[hybrid()], Settings::PLAIN, &Quiet).unwrap();
-        assert!(
-            results
-                .with_errors()
-                .iter()
-                .all(|row| row.quantity.name != "dissipation")
-        );
-        estimate(&case, &hybrid(), &mut results, &Quiet).unwrap();
+        let settings = |error| Settings {
+            error,
+            ..Settings::PLAIN
+        };
+        let run = |error| run_case(&case, &[hybrid()], settings(error), &Quiet).unwrap();
+        let without = run(false).with_errors().len();
+        assert_eq!(without, 0);
+        let results = run(true);
         let rows = results.with_errors();
         let own = rows
             .iter()

@@ -117,9 +117,11 @@ proptest! {
             Err(error) => {
                 let lines = bytes.iter().filter(|b| **b == b'\n').count() + 1;
                 prop_assert!((1..=lines).contains(&error.line()) && error.column() >= 1, "{error}");
-                let place = format!("{}:{}:{}: ", file.display(), error.line(), error.column());
-                assert_clear(&error.to_string(), &place, 3);
-                prop_assert!(!error.value().is_empty() && !error.allowed().is_empty(), "{error}");
+                for error in error.faults() {
+                    let place = format!("{}:{}:{}: ", file.display(), error.line(), error.column());
+                    assert_clear(&error.to_string(), &place, 3);
+                    prop_assert!(!error.value().is_empty() && !error.allowed().is_empty(), "{error}");
+                }
             }
         }
     }
@@ -136,12 +138,14 @@ proptest! {
         match quick(|| Plan::read(&file)) {
             Ok(plan) => prop_assert!(!plan.tasks.is_empty()),
             Err(error) => {
-                // A case that does not exist has no place in itself.
-                let begins = match error.line() {
-                    0 => dir.path().display().to_string(),
-                    line => format!("{}:{line}:{}: ", error.file().display(), error.column()),
-                };
-                assert_clear(&error.to_string(), &begins, 3);
+                for error in error.faults() {
+                    // A case that does not exist has no place in itself.
+                    let begins = match error.line() {
+                        0 => dir.path().display().to_string(),
+                        line => format!("{}:{line}:{}: ", error.file().display(), error.column()),
+                    };
+                    assert_clear(&error.to_string(), &begins, 3);
+                }
             }
         }
     }

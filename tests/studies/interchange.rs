@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::*;
-use stickslip::case::Case;
-use stickslip::case::shipped;
+use stickslip::case::{Case, Target, shipped};
 use stickslip::files::interchange::{
     Info, LocalEquality, LocalProblem, Problem, SparseMatrix, fclib,
 };
@@ -47,7 +46,7 @@ fn direct(case: &Case, method: &str, friction: f64, increment: usize) -> Vec<f64
     case.expects.clear();
     let choice = Choice::new(stickslip::run::registry::method(method).unwrap(), &[]).unwrap();
     let settings = Settings {
-        tier: Some(Tier::High),
+        tier: Some(Target::Tier(Tier::High)),
         ..Settings::PLAIN
     };
     let results = run_case(&case, &[choice], settings, &Quiet).unwrap();

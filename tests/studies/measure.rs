@@ -65,7 +65,7 @@ fn timed(bench: &mut Bench, task: &Task, choice: Choice) -> Record {
     if !record.found.verdict.is_honest() {
         return record;
     }
-    let times = in_turn(&scene, task, &[choice], REPEATS);
+    let times = in_turn(&scene, &[(&task.asked, &choice)], REPEATS);
     record.retimed(times.into_iter().next().unwrap())
 }
 
@@ -251,7 +251,8 @@ fn methods_are_timed_in_turn() {
     let forgetful = Choice::new(&FORGETFUL, &[]).unwrap();
     let choices = [own("hybrid"), forgetful, own("nsgs")];
     let (mut bench, task) = (Bench::default(), task("plate_mesh1", "hybrid", 1e-6));
-    let times = in_turn(&bench.scene(&task).unwrap(), &task, &choices, REPEATS);
+    let tasks = choices.each_ref().map(|choice| (&task.asked, choice));
+    let times = in_turn(&bench.scene(&task).unwrap(), &tasks, REPEATS);
     let samples: Vec<Option<usize>> = times
         .iter()
         .map(|own| own.as_ref().ok().map(|times| times.enforcement.samples))

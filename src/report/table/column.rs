@@ -262,6 +262,16 @@ impl<R> Column<R> {
         }
     }
 
+    /// Cell of a JSON object, with the digits of the CSV file.
+    pub fn json(&self, row: &R) -> serde_json::Value {
+        match (self.get)(row) {
+            Value::Text(text) => text.into(),
+            Value::Whole(count) => count.into(),
+            Value::Real(_) => self.csv(row).parse::<f64>().map_or(().into(), Into::into),
+            Value::Empty => ().into(),
+        }
+    }
+
     /// Cell for reading; a dash where there is nothing.
     pub fn read(&self, row: &R) -> String {
         match (self.get)(row) {

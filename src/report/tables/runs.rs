@@ -3,8 +3,6 @@
 use std::cmp::Ordering;
 
 use super::words::*;
-use crate::model::errors::Deviation;
-use crate::model::quantities::EXACT;
 use crate::report::table::{Column, Order, Row, columns};
 use crate::studies::analysis::{compare_methods, compare_problems, published_times};
 use crate::studies::record::{ProblemSize, Record, SolverError, Spent, Step};
@@ -90,13 +88,27 @@ impl RunRow<'_> {
 
     /// With its kind.
     fn discretisation_error(&self) -> (f64, &str) {
-        let energy = |d: &&Deviation| d.quantity == "energy" && d.at.is_empty();
-        let exact = self.0.found.deviations.iter().find(energy);
-        match (exact, &self.0.found.energy_error) {
-            (Some(exact), _) => (exact.error, EXACT),
-            (None, Some((error, kind))) => (*error, kind),
-            (None, None) => (f64::NAN, ""),
-        }
+        self.0.discretisation_error().unwrap_or((f64::NAN, ""))
+    }
+
+    /// √(e² + s²) of the error of the mesh and that of the solver, which are orthogonal without friction.
+    fn total_error(&self, of: &Record) -> f64 {
+        let solver = of.found.solver_error.as_ref();
+        solver.map_or(f64::NAN, |own| {
+            own.energy.hypot(self.discretisation_error().0)
+        })
+    }
+
+    /// What the same to the accuracy of the case took more.
+    fn saved(&self, of: impl Fn(&Record) -> f64) -> f64 {
+        let beside = self.0.beside.as_deref();
+        beside.map_or(f64::NAN, |fine| of(fine) - of(self.0))
+    }
+
+    /// The total error of the same to the accuracy of the case.
+    fn total_error_beside(&self) -> f64 {
+        let beside = self.0.beside.as_deref();
+        beside.map_or(f64::NAN, |fine| self.total_error(fine))
     }
 
     /// A size of the problem; not-a-number where there is none.
@@ -162,6 +174,11 @@ impl Row for RunRow<'_> {
             "reference_natural_map" "–" .residual() = r.error(|e| e.reference_natural_map), "its residual";
             "discretisation_error" "–" .significant(4) = r.discretisation_error().0, "relative error of the mesh in the energy norm at the end of the path; `NaN` where nothing tells";
             "discretisation_kind" "" = r.discretisation_error().1, "`exact`: against the closed form; `estimate`: from a second mesh (`--error`), √(4/3 |ΔE|/E), with friction 0.5 to 1.2 of the true one; empty without";
+            "total_error" "–" .significant(4) = r.total_error(r.0), "√(discretisation_error² + error_energy²)";
+            "total_error_fine" "–" .significant(4) = r.total_error_beside(), "that of the same run to the accuracy of the case: this column and the three `saved` are of runs that the error of the mesh ends (tier `mesh`)";
+            "iterations_saved" "" = r.saved(|own| own.found.sum(|i| i.iterations) as f64), "what that run took more";
+            "factorisations_saved" "" = r.saved(|own| own.found.sum(|i| i.tangent_factorisations + i.global_factorisations) as f64), "dense and of K";
+            "enforcement_saved_s" "s" .time() = r.saved(|own| published_times(own).map_or(f64::NAN, |s| s.enforcement.median_s)), "medians of both taken in turn; what the estimate took is not counted";
             "dim" "" = r.size(|size| size.dim), DIMENSION;
             "dofs" "" = r.size(|size| size.dofs), DOFS;
             "points" "" .shown() = r.size(|size| size.points), POINTS;

@@ -97,6 +97,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
         },
         limits: None,
         spent: None,
+        beside: None,
     }
 }
 

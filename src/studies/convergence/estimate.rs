@@ -22,10 +22,9 @@ use crate::model::quantities::{ESTIMATE, EXACT, Quantity};
 use crate::run::choice::Choice;
 use crate::run::progress::Progress;
 use crate::studies::axes::Axes;
-use crate::studies::measure::{Bench, RunError};
+use crate::studies::measure::{Bench, MeasureError, RunError};
 use crate::studies::record::Record;
-use crate::studies::results::Results;
-use crate::studies::task::Looks;
+use crate::studies::task::{Asked, Looks};
 
 /// Bar of a coarser value, in that of the finer one.
 const OF_COARSER: f64 = 4.0 / 3.0;
@@ -43,33 +42,40 @@ pub struct Errors {
     pub found: BTreeMap<[String; 2], f64>,
 }
 
-/// Puts the errors of their mesh beside the quantities of all honest runs of a case, at the end of their paths.
+/// Method that errors of meshes are estimated by.
+const REFERENCE: &str = "hybrid";
+
+/// Errors of the meshes of a case by refinement factor and the bits of the friction coefficient.
+pub type OfMeshes = BTreeMap<usize, BTreeMap<u64, Errors>>;
+
+/// Errors of all meshes of a case.
 ///
 /// # Errors
 /// Of the case or its discretisation on the second mesh; what the method does wrong there leaves no estimate.
-pub fn estimate(
-    case: &Case,
-    choice: &Choice,
-    results: &mut Results,
-    progress: &dyn Progress,
-) -> Result<(), RunError> {
+pub fn estimate(case: &Case, progress: &dyn Progress) -> Result<OfMeshes, RunError> {
+    let choice = Choice::parse(REFERENCE).map_err(MeasureError::from)?;
     let mut meshes: Vec<usize> = case.sweep.refine.clone();
     meshes.sort_unstable();
     meshes.dedup();
-    for refine in meshes {
-        let all = errors_of_mesh(case, refine, choice, progress)?;
-        let own = |record: &Record| record.asked.case == case.name && record.asked.refine == refine;
-        let records = results.answers.iter_mut().map(|answer| &mut answer.record);
-        for record in records.filter(|record| own(record) && record.found.verdict.is_honest()) {
-            if let Some(errors) = all.get(&record.asked.mu().to_bits()) {
-                record.found.energy_error = errors.energy.map(|(error, kind)| (error, kind.into()));
-                let last = record.found.increments.last_mut();
-                let quantities = last.into_iter().flat_map(|step| &mut step.quantities);
-                quantities.for_each(|quantity| errors.put(quantity));
-            }
-        }
+    let of = |refine| Ok((refine, errors_of_mesh(case, refine, &choice, progress)?));
+    meshes.into_iter().map(of).collect()
+}
+
+/// Those of a problem.
+pub fn of_problem<'a>(errors: &'a OfMeshes, asked: &Asked) -> Option<&'a Errors> {
+    errors.get(&asked.refine)?.get(&asked.mu().to_bits())
+}
+
+/// Puts the errors of the mesh beside the quantities of an honest run, at the end of its path.
+pub fn put(errors: &OfMeshes, record: &mut Record) {
+    let own = of_problem(errors, &record.asked);
+    let found = &mut record.found;
+    if let Some(errors) = own.filter(|_| found.verdict.is_honest()) {
+        found.energy_error = errors.energy.map(|(error, kind)| (error, kind.into()));
+        let last = found.increments.last_mut();
+        let quantities = last.into_iter().flat_map(|step| &mut step.quantities);
+        quantities.for_each(|quantity| errors.put(quantity));
     }
-    Ok(())
 }
 
 /// Errors on a mesh by the bits of the friction coefficient.

@@ -479,7 +479,7 @@ pub fn warm_up(dim: usize) {
                 loads: Loads::Body(&loading),
             },
             choice: &choice,
-            accuracy: Accuracy::of(&case, case.tier),
+            accuracy: Accuracy::own(&case),
             guess: Guess::Before,
         };
         run.follow(&mut |_| ());

@@ -14,7 +14,7 @@ use crate::run::path::Solver;
 use crate::run::verdict::Verdict;
 use crate::studies::record::Times;
 use crate::studies::statistics::Timing;
-use crate::studies::task::Task;
+use crate::studies::task::Asked;
 
 /// How often a cell is repeated for its times.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -45,22 +45,19 @@ impl Repeats {
     }
 }
 
-/// Times of some methods on one problem at one accuracy, all with an honest answer; the verdict is on a method that errs or
-/// finds other bits when asked again. `task`: that of any of them.
+/// Times of some tasks on one problem with their methods, all with an honest answer; the verdict is on a method that errs or
+/// finds other bits when asked again.
 pub fn in_turn(
     scene: &Scene<'_>,
-    task: &Task,
-    choices: &[Choice],
+    tasks: &[(&Asked, &Choice)],
     repeats: Repeats,
 ) -> Vec<Result<Times, Verdict>> {
     let posed = scene.posed();
     let path = Path {
         posed,
         rest: ContactState::zero(posed.system),
-        asked: task.asked.accuracy().asked,
-        cold: task.asked.cold,
     };
-    let mut runners: Vec<Runner> = choices.iter().map(Runner::new).collect();
+    let mut runners: Vec<Runner> = tasks.iter().copied().map(Runner::new).collect();
     while runners.iter().any(|own| own.goes_on(repeats)) {
         for own in runners.iter_mut().filter(|own| own.goes_on(repeats)) {
             own.broken = own.round(&path).err();
@@ -73,14 +70,11 @@ pub fn in_turn(
 struct Path<'a> {
     posed: Posed<'a>,
     rest: ContactState,
-    /// Accuracy asked for.
-    asked: f64,
-    /// Whether every increment is begun from no contact forces.
-    cold: bool,
 }
 
 /// One method.
 struct Runner<'a> {
+    asked: &'a Asked,
     choice: &'a Choice,
     /// At the end of every increment, found in the first round.
     states: Vec<ContactState>,
@@ -90,8 +84,9 @@ struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    fn new(choice: &'a Choice) -> Self {
+    fn new((asked, choice): (&'a Asked, &'a Choice)) -> Self {
         Runner {
+            asked,
             choice,
             states: Vec::new(),
             samples: Default::default(),
@@ -117,9 +112,9 @@ impl<'a> Runner<'a> {
                 load: &load,
                 start_load: &start_load,
                 start: index.checked_sub(1).map_or(&path.rest, |i| &self.states[i]),
-                guess: path.cold.then_some(&path.rest.p[..]),
+                guess: self.asked.cold.then_some(&path.rest.p[..]),
                 index,
-                tolerance: path.asked,
+                tolerance: self.asked.accuracy().asked,
             };
             let (outcome, seconds) = solver.solve(&problem);
             sums[1] += seconds.total_s;

@@ -370,7 +370,7 @@ mod tests {
             fields: true,
             ..Looks::default()
         };
-        let accuracy = [Accuracy::of(&case, case.tier)];
+        let accuracy = [Accuracy::own(&case)];
         let tasks = Subject::of(&case).tasks(&Axes::of(&case), &named(&choice), &accuracy, looks);
         let mut bench = Bench::default();
         let scene = bench.scene(&tasks[0]).unwrap();

@@ -184,7 +184,7 @@ impl<'a> Open<'a> {
             class: category.clone(),
             ..Subject::of(&self.case)
         };
-        let accuracy = Accuracy::of(&self.case, self.case.tier);
+        let accuracy = Accuracy::own(&self.case);
         subject.tasks(axes, &[Named::of(&choice)], &[accuracy], looks)
     }
 

@@ -187,7 +187,7 @@ fn every_table_arrives_in_the_case() {
 fn absent_keys_take_their_documented_defaults() {
     let case = accepted(SOLID);
     assert_eq!(case.quadrature, Quadrature::SubCells);
-    assert_eq!(case.tier.as_str(), "high");
+    assert_eq!(case.target.to_string(), "high");
     assert_eq!((case.path.increments, case.path.end), (1, 1.0));
     assert!(case.sweep.friction.is_empty() && case.sweep.refine == [1]);
     let crack = &case.cracks[0];
@@ -228,6 +228,21 @@ fn an_error_shows_the_line_with_the_value_underlined() {
         "              ^^^^",
     ];
     assert_eq!(shown, wanted.join("\n"));
+}
+
+#[test]
+fn all_faults_of_a_file_are_told_at_once() {
+    let [title, tier, poisson, side] = ["3", "\"hgih\"", "0.75", "\"bottm\""];
+    let text = PLANE
+        .replace("\"Plate\"", title)
+        .replace("\"mid\"", tier)
+        .replace("poisson = 0.3", &format!("poisson = {poisson}"))
+        .replace("on = \"bottom\"", &format!("on = {side}"));
+    let shown = refused(&text).to_string();
+    assert_eq!(shown.matches("bad.toml:").count(), 4, "{shown}");
+    let faults = refused(&text).faults();
+    let told: Vec<&str> = faults.iter().map(|own| own.value()).collect();
+    assert_eq!(told, [title, tier, poisson, side]);
 }
 
 #[test]

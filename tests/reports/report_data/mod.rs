@@ -130,6 +130,7 @@ pub fn answer(key: &RunKey, increments: Vec<Step>) -> Answer {
         limits: None,
         found,
         spent: Spent::of([0.000_123_45, 0.001_234_567], &[work]),
+        beside: None,
     };
     Answer {
         record,
