@@ -169,7 +169,9 @@ impl Errors {
                 quantity.error = *bar;
                 quantity.error_kind = ESTIMATE.into();
             }
-            Some(Err(reason)) if quantity.error_kind.is_empty() => {
+            // Paths around a tip that agree say nothing of the mesh.
+            Some(Err(reason)) if quantity.value.is_finite() => {
+                quantity.error = f64::NAN;
                 quantity.error_kind = format!("no estimate: {reason}");
             }
             _ => {}
