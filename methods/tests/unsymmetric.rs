@@ -114,7 +114,7 @@ fn the_judge_does_not_take_the_symmetric_part_for_w() {
     let load = free_jump(&rng.vector(12).iter().map(|q| q - 0.5).collect::<Vec<_>>());
     let symmetric = Elastic::from_delassus(3, sparse(&part), vec![]).unwrap();
     let newton = method("newton-ac").unwrap();
-    let outcome = solved(newton, &[], &system(&symmetric, 0.4), &load, 1e-12);
+    let outcome = solved(newton, &[], &system(&symmetric, 0.4), &load, 1e-12).unwrap();
     let given = body(3, &w);
     let s = system(&given, 0.4);
     // Displacements of W for these forces, so that equilibrium holds.
