@@ -35,7 +35,7 @@ use crate::run::choice::Choice;
 use crate::run::verdict::Accuracy;
 use crate::studies::axes::named;
 use crate::studies::measure::Repeats;
-use crate::studies::sources::Problem;
+use crate::studies::sources::{Problem, Size};
 use crate::studies::task::{Looks, Task};
 use block::{Quota, block};
 
@@ -57,9 +57,11 @@ pub struct Plan {
 /// Finer meshes for time against total error, as far as they have not more cells in 2D and in 3D.
 const FINER: [[usize; 2]; 2] = [[2, 4], [2, 3]];
 const MOST_CELLS: [f64; 2] = [1e5, 7e3];
-/// Times of a task with its repetitions, and of a cell in 2D and 3D [s]: from studies of shipped cases.
-const FIXED_S: f64 = 0.1;
-const CELL_S: [f64; 2] = [8e-5, 5e-3];
+/// Times from studies of shipped cases [s]: of a task with its repetitions, of a cell of a body in 2D, in 3D and in 3D with a
+/// front inside, whose cells have branch functions; part of the latter that is spent on the errors of an answer.
+const TASK_S: f64 = 0.08;
+const CELL_S: [f64; 3] = [3e-5, 1e-4, 4e-3];
+const OF_ERRORS: f64 = 0.25;
 
 impl Plan {
     /// Reads a sweep file.
@@ -102,31 +104,35 @@ impl Plan {
     /// Time against error: problems as they say themselves by some methods, asked for one decade after the other, and on finer
     /// meshes for tier high; those of files at every tier.
     pub fn of_problems(title: String, problems: &[Problem], choices: &[Choice]) -> Self {
-        let decades: Vec<Accuracy> = (2..=10)
-            .map(|d| Accuracy::exactly(10f64.powi(-d)))
-            .collect();
+        let high = Accuracy::exactly(Tier::High.tolerance());
+        let decades = (2..=10).map(|d| Accuracy::exactly(10f64.powi(-d)));
+        let decades: Vec<Accuracy> = decades.filter(|own| *own != high).collect();
         let tiers = Tier::ALL.map(|tier| Accuracy::exactly(tier.tolerance()));
-        let high = [Accuracy::exactly(Tier::High.tolerance())];
-        let looks = Looks {
+        let truth = Looks {
             truth: true,
             error: true,
             output: true,
             ..Looks::default()
         };
+        // The errors of the mesh are those of the best answer.
+        let looks = Looks {
+            truth: false,
+            ..truth
+        };
         let methods = named(choices);
         let of = |own: &Problem| {
-            let Some((dim, cells)) = own.mesh else {
-                return own.subject.tasks(&own.axes, &methods, &tiers, looks);
+            let Some(Size { dim, cells, .. }) = own.size else {
+                return own.subject.tasks(&own.axes, &methods, &tiers, truth);
             };
-            let mut finer = own.axes.clone();
+            let mut meshes = own.axes.clone();
             let fits = |factor: &usize| {
                 cells * (*factor as f64).powi(dim as i32) <= MOST_CELLS[usize::from(dim == 3)]
             };
             let factors = FINER[usize::from(dim == 3)];
             let all = own.axes.refine.iter().flat_map(|r| factors.map(|f| r * f));
-            finer.refine = all.filter(fits).collect();
+            meshes.refine.extend(all.filter(fits));
             let mut tasks = own.subject.tasks(&own.axes, &methods, &decades, looks);
-            tasks.extend(own.subject.tasks(&finer, &methods, &high, looks));
+            tasks.extend(own.subject.tasks(&meshes, &methods, &[high], truth));
             tasks
         };
         let tasks = problems.iter().flat_map(of).collect();
@@ -138,16 +144,33 @@ impl Plan {
 
     /// Time on one core [s], from the cells of the meshes: within a factor of three where methods converge.
     fn predicted(&self, problems: &[Problem]) -> f64 {
-        let meshes = problems.iter().map(|own| (&own.subject.digest, own.mesh));
-        let meshes: BTreeMap<&String, Option<(usize, f64)>> = meshes.collect();
-        let of = |task: &Task| {
-            let mesh = meshes.get(&task.asked.digest).copied().flatten();
-            mesh.map_or(FIXED_S, |(dim, cells)| {
-                let cells = cells * (task.asked.refine as f64).powi(dim as i32);
-                FIXED_S + CELL_S[usize::from(dim == 3)] * cells
+        let sizes = problems
+            .iter()
+            .filter_map(|own| Some((&own.subject.digest, own.size?)));
+        let sizes: BTreeMap<&String, Size> = sizes.collect();
+        let body_s = |task: &Task| {
+            sizes.get(&task.asked.digest).map_or(0.0, |size| {
+                let kind = usize::from(size.dim == 3) * (1 + usize::from(size.ends));
+                CELL_S[kind] * size.cells * (task.asked.refine as f64).powi(size.dim as i32)
             })
         };
-        self.tasks.iter().map(of).sum()
+        let task_s = |task: &Task| {
+            let steps = sizes
+                .get(&task.asked.digest)
+                .map_or(1, |own| own.increments);
+            let path_s = TASK_S * (1.0 + 0.1 * (steps * task.asked.increments) as f64);
+            path_s
+                + if task.looks.truth {
+                    OF_ERRORS * body_s(task)
+                } else {
+                    0.0
+                }
+        };
+        let mut bodies: Vec<&Task> = self.tasks.iter().collect();
+        bodies.sort_by_key(|task| task.asked.body());
+        bodies.dedup_by_key(|task| task.asked.body());
+        let bodies: f64 = bodies.into_iter().map(body_s).sum();
+        bodies + self.tasks.iter().map(task_s).sum::<f64>()
     }
 
     /// Blocks may overlap.

@@ -9,7 +9,7 @@ mod problem;
 pub mod random;
 
 pub(crate) use problem::entries;
-pub use problem::{MOST, Problem};
+pub use problem::{MOST, Problem, Size};
 
 use std::path::Path;
 

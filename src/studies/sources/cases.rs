@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use super::{Problem, entries};
+use super::{Problem, Size, entries};
 use crate::case::reader::Value;
 use crate::case::{self, Case, CaseError, shipped};
 use crate::studies::axes::{Axes, Subject};
+use crate::studies::tips::{Regularity, regularity};
 
 impl Problem {
     /// A case, as it says itself where a sweep does not.
@@ -14,7 +15,12 @@ impl Problem {
             subject: Subject::of(case),
             axes: Axes::of(case),
             cracks: Some(case.cracks.len()),
-            mesh: Some((case.model.dim(), case.mesh.grid.cells())),
+            size: Some(Size {
+                dim: case.model.dim(),
+                cells: case.mesh.grid.cells(),
+                ends: regularity(case) != Regularity::Smooth,
+                increments: case.path.increments,
+            }),
         }
     }
 }

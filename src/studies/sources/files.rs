@@ -75,7 +75,7 @@ impl FileProblem {
             },
             axes: Axes::of_file(&self.friction),
             cracks: None,
-            mesh: None,
+            size: None,
         }
     }
 }

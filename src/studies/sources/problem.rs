@@ -12,8 +12,21 @@ pub struct Problem {
     pub axes: Axes,
     /// Number of its cracks, which a friction coefficient of the sweep is for; none: it has no axes but methods and tolerances.
     pub cracks: Option<usize>,
-    /// Dimension, and number of cells at refinement 1; none of a file.
-    pub mesh: Option<(usize, f64)>,
+    /// What its time depends on; none of a file.
+    pub size: Option<Size>,
+}
+
+/// What the time that a case takes depends on.
+#[derive(Clone, Copy)]
+pub struct Size {
+    /// Dimension.
+    pub dim: usize,
+    /// Number of cells at refinement 1.
+    pub cells: f64,
+    /// Whether a crack ends inside the body.
+    pub ends: bool,
+    /// Increments of its path.
+    pub increments: usize,
 }
 
 /// Largest number of problems that one entry of a sweep file asks for: all are read or drawn before anything is measured.
