@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
 use stickslip_methods::PointStatus;
 use stickslip_xfem::contact::pairs::SurfaceCorner;
 use stickslip_xfem::cut::crack::Parent;
@@ -101,11 +102,10 @@ const STRESS: [&[(&str, usize, usize)]; 2] = [
 /// The body. Cells share the mesh nodes on their own side of a crack; the faces have points of their own.
 fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     let (mesh, dim) = (&body.mesh, body.mesh.dim());
-    let integrator = body.integrator();
     let mut cells = Vec::new();
     let mut vertices = Vertices::new(body, now);
-    let axes: &[(&str, usize, usize)] = STRESS[usize::from(dim == 3)];
-    let mut stress = vec![Vec::new(); axes.len() + 1];
+    // Cell and region of every cell of the picture, and the place in it where its stress is taken.
+    let mut taken: Vec<(usize, usize, Point)> = Vec::new();
     let mut sides = Vec::new();
     let whole = match mesh.kind {
         CellKind::Quad4 => CellShape::Quad,
@@ -113,25 +113,12 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     };
     for cell in 0..mesh.cell_count() {
         let map = mesh.map(cell);
-        // As its stiffness, which was integrated: no number is no stress.
-        let mut own = integrator.stress(cell).ok();
-        let mut add_stress = |xi: Point, region: usize| {
-            let h = own
-                .as_mut()
-                .map(|own| own.field(&xi, &map.at(&xi), region, &now.u).1);
-            let sigma = h.map(|h| material::stress(body.lame, dim, &h));
-            for (values, &(_, a, b)) in stress.iter_mut().zip(axes) {
-                values.push(sigma.map_or(f64::NAN, |sigma| sigma[a][b]));
-            }
-            let von_mises = h.map_or(f64::NAN, |h| body.lame.von_mises(&h, dim));
-            stress[axes.len()].push(von_mises);
-        };
         let Some(partition) = body.enrichment.partition(cell) else {
             cells.push(FieldCell {
                 shape: whole,
                 points: map.iter().map(|x| vertices.of(cell, x, 0, now)).collect(),
             });
-            add_stress([0.0; 3], 0);
+            taken.push((cell, 0, [0.0; 3]));
             sides.push(0.0);
             continue;
         };
@@ -145,13 +132,12 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
                         .collect(),
                 });
                 let xi = map.inverse(&mean(&part)).unwrap_or_default();
-                add_stress(xi, region);
+                taken.push((cell, region, xi));
                 sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
             }
         }
     }
-    let names = axes.iter().map(|axis| axis.0).chain(["von_mises_pa"]);
-    let mut cell_scalars: Vec<(String, Vec<f64>)> = names.map(str::to_owned).zip(stress).collect();
+    let mut cell_scalars = stresses(body, now, &taken);
     cell_scalars.push(("side".into(), sides));
     FieldMesh {
         dim,
@@ -161,6 +147,41 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         point_scalars: Vec::new(),
         cell_scalars,
     }
+}
+
+/// Stress at places in cells, by name.
+fn stresses(
+    body: &Body,
+    now: &Snapshot,
+    taken: &[(usize, usize, Point)],
+) -> Vec<(String, Vec<f64>)> {
+    let (mesh, dim, integrator) = (&body.mesh, body.mesh.dim(), body.integrator());
+    let axes = STRESS[usize::from(dim == 3)];
+    let of_cell = |places: &[(usize, usize, Point)]| -> Vec<Option<[Point; 3]>> {
+        let map = mesh.map(places[0].0);
+        // As its stiffness, which was integrated: no number is no stress.
+        let mut own = integrator.stress(places[0].0).ok();
+        let mut gradient = |&(_, region, xi): &(usize, usize, Point)| {
+            let own = own.as_mut()?;
+            Some(own.field(&xi, &map.at(&xi), region, &now.u).1)
+        };
+        places.iter().map(&mut gradient).collect()
+    };
+    let cells: Vec<&[(usize, usize, Point)]> = taken.chunk_by(|a, b| a.0 == b.0).collect();
+    let gradients = cells.into_par_iter().flat_map_iter(of_cell);
+    let gradients: Vec<Option<[Point; 3]>> = gradients.collect();
+    let of = |value: &dyn Fn(&[Point; 3]) -> f64| {
+        let values = gradients.iter().map(|h| h.as_ref().map_or(f64::NAN, value));
+        values.collect()
+    };
+    let mut all: Vec<(String, Vec<f64>)> = Vec::new();
+    for &(name, a, b) in axes {
+        let values = of(&|h| material::stress(body.lame, dim, h)[a][b]);
+        all.push((name.to_owned(), values));
+    }
+    let von_mises = of(&|h| body.lame.von_mises(h, dim));
+    all.push(("von_mises_pa".to_owned(), von_mises));
+    all
 }
 
 /// Faces of cracks that a point lies on: crack, and whether on side 1.

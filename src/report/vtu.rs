@@ -263,7 +263,7 @@ fn encode(bytes: &[u8]) -> std::io::Result<String> {
     ];
     let mut body = Vec::new();
     for block in bytes.chunks(BLOCK) {
-        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(block)?;
         let compressed = encoder.finish()?;
         header.push(compressed.len() as u64);

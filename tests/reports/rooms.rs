@@ -267,8 +267,8 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 13] = [
-    ("methods/src", 18_000), ("xfem/src", 22_340), ("src/files", 2075), ("src/case", 3320), ("src/model", 2910), ("src/run", 2205),
-    ("src/studies", 16_601), ("src/report", 10_395), ("src/cli", 2020), ("benches", 570), ("methods/tests", 3220), ("xfem/tests", 125),
+    ("methods/src", 18_000), ("xfem/src", 22_340), ("src/files", 2075), ("src/case", 3320), ("src/model", 2931), ("src/run", 2205),
+    ("src/studies", 16_601), ("src/report", 10_435), ("src/cli", 2020), ("benches", 570), ("methods/tests", 3220), ("xfem/tests", 125),
     ("tests", 17_885),
 ];
 

@@ -8,8 +8,8 @@ use crate::algebra::dense::{dot, mul_add, norm, refill};
 use crate::algebra::matrix::SquareMatrix;
 use crate::error::MethodError;
 
-/// Largest number of contact rows condensed: W then takes 8 n² bytes, 1.15 GB.
-pub const MAX_CONDENSED_ROWS: usize = 12_000;
+/// Largest number of contact rows condensed: W then takes 8 n² bytes, 3.2 GB.
+pub const MAX_CONDENSED_ROWS: usize = 20_000;
 
 /// The Delassus operator on the contact rows in use, in m/N (2D: m²/N): symmetric positive semi-definite where it comes from
 /// a stiffness, whatever it is where it was given. How it is held is the business of the implementation alone.

@@ -75,13 +75,8 @@ fn level_step(raw: f64) -> f64 {
 
 /// Fills the triangles with the bands of `levels` and draws the contour lines.
 pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_mm: f64) {
-    let lowest = std::iter::once(f64::NEG_INFINITY);
     let mut lines = Vec::new();
-    for (band, level) in lowest.chain(levels.inner.iter().copied()).enumerate() {
-        let mut above = Region::default();
-        for triangle in triangles {
-            above.add(&part_above(triangle, level));
-        }
+    for (band, mut above) in regions(triangles, levels).into_iter().enumerate() {
         let loops = above.loops();
         canvas.fill_region(&loops, levels.colour(band));
         lines.extend(loops);
@@ -90,6 +85,50 @@ pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_m
         line.extend(line.first().copied());
         canvas.pixel_line(line, BLACK, line_mm);
     }
+}
+
+/// Edges of the last triangles, among which those of a face of four meet.
+const RECENT: usize = 8;
+
+/// What lies above every level, the first of which is below all: of most triangles no edge is left, since their neighbours lie
+/// above the same levels.
+fn regions(triangles: &[Triangle], levels: &Levels) -> Vec<Region> {
+    let lowest = std::iter::once(f64::NEG_INFINITY);
+    let levels: Vec<f64> = lowest.chain(levels.inner.iter().copied()).collect();
+    let mut regions: Vec<Region> = levels.iter().map(|_| Region::default()).collect();
+    // Edges of triangles with the number of levels that all of the triangle is above.
+    let mut whole = Vec::with_capacity(3 * triangles.len());
+    for triangle in triangles {
+        let is_above = |level: &&f64| triangle.iter().all(|corner| corner.1 >= **level);
+        let above = levels.iter().take_while(is_above).count();
+        let corners = triangle.map(|(pixel, _)| pixel);
+        for (edge, sign) in Region::edges(&corners) {
+            // Most are shared with the triangle before.
+            let recent = whole.len().saturating_sub(RECENT);
+            let back = (edge, -sign, above);
+            match whole[recent..].iter().position(|own| *own == back) {
+                Some(place) => drop(whole.swap_remove(recent + place)),
+                None => whole.push((edge, sign, above)),
+            }
+        }
+        let is_cut = |level: &f64| triangle.iter().any(|corner| corner.1 >= *level);
+        let cut = levels[above..].iter().take_while(|level| is_cut(level));
+        for (region, level) in regions[above..].iter_mut().zip(cut) {
+            region.add(&part_above(triangle, *level));
+        }
+    }
+    whole.sort_unstable();
+    for equal in whole.chunk_by(|a, b| a.0 == b.0) {
+        let most = equal.iter().map(|own| own.2).max().unwrap_or(0);
+        for (band, region) in regions.iter_mut().enumerate().take(most) {
+            let own = equal.iter().filter(|own| own.2 > band);
+            match own.map(|own| own.1).sum() {
+                0 => {}
+                count => region.edges.push((equal[0].0, count)),
+            }
+        }
+    }
+    regions
 }
 
 /// A vertical colour bar with its label on top: lower left corner, height, in millimetres.
@@ -173,24 +212,27 @@ fn cut(a: (Pixel, f64), b: (Pixel, f64), level: f64) -> Pixel {
 /// Union of polygons by their outline: directed edges, of which opposite ones cancel.
 #[derive(Default)]
 pub struct Region {
-    /// Ends in order, and whether the edge runs that way (+1) or back (−1).
+    /// Ends in order, and how often the edge runs that way, or back (−).
     edges: Vec<([Pixel; 2], i32)>,
 }
 
 impl Region {
     /// Adds a polygon.
     pub fn add(&mut self, polygon: &[Pixel]) {
+        self.edges.extend(Self::edges(polygon));
+    }
+
+    /// The edges of a polygon.
+    fn edges(polygon: &[Pixel]) -> impl Iterator<Item = ([Pixel; 2], i32)> + '_ {
         let area: i64 = edges_of(polygon)
             .map(|(a, b)| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]))
             .sum();
         // A polygon flattened by the rounding still counts: its edges cancel those of its neighbours.
-        for (a, b) in edges_of(polygon) {
+        let of = move |(a, b): (Pixel, Pixel)| {
             let (a, b) = if area < 0 { (b, a) } else { (a, b) };
-            if a != b {
-                let edge = if a < b { ([a, b], 1) } else { ([b, a], -1) };
-                self.edges.push(edge);
-            }
-        }
+            (a != b).then_some(if a < b { ([a, b], 1) } else { ([b, a], -1) })
+        };
+        edges_of(polygon).filter_map(of)
     }
 
     /// Closed outlines; every remaining edge is walked as often as it is counted.

@@ -63,12 +63,11 @@ pub fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 2]> {
 
 /// Edges of exactly one of the faces.
 pub fn outline(faces: &[Vec<usize>]) -> BTreeSet<[usize; 2]> {
-    let mut count: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-    for edge in faces.iter().flat_map(|face| sides(face)).map(undirected) {
-        *count.entry(edge).or_default() += 1;
-    }
-    let single = count.into_iter().filter(|(_, n)| *n == 1);
-    single.map(|(edge, _)| edge).collect()
+    let edges = faces.iter().flat_map(|face| sides(face)).map(undirected);
+    let mut edges: Vec<[usize; 2]> = edges.collect();
+    edges.sort_unstable();
+    let single = edges.chunk_by(|a, b| a == b).filter(|own| own.len() == 1);
+    single.map(|own| own[0]).collect()
 }
 
 fn undirected([a, b]: [usize; 2]) -> [usize; 2] {
