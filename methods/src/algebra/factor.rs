@@ -49,7 +49,7 @@ impl Elimination {
         /// Least gain by the free order.
         const GAIN: f64 = 0.8;
         /// Part of the work that lies in the contact unknowns where another order may gain so much.
-        const DENSE: f64 = 0.5;
+        const DENSE: f64 = 0.1;
         let last = Analysis::new(k, &self.contact_last, &self.in_contact);
         let c = (k.size() - last.ordering.contact_begin) as f64;
         let m = self.rows.len() as f64;
