@@ -56,10 +56,13 @@ pub struct Plan {
 
 /// Finer meshes for time against total error, as far as they have not more cells in 2D and in 3D.
 const FINER: [[usize; 2]; 2] = [[2, 4], [2, 3]];
-const MOST_CELLS: [f64; 2] = [1e5, 7e3];
+const MOST_CELLS: [f64; 2] = [1e5, 1.5e4];
 /// Times from studies of shipped cases [s]: of a task with its repetitions, of a cell of a body in 2D, in 3D and in 3D with a
-/// front inside, whose cells have branch functions; part of the latter that is spent on the errors of an answer.
+/// front inside, whose cells have branch functions; part of the latter that is spent on the errors of an answer. Of a cell and
+/// increment, and how often a path is followed for repetitions and the converged solution.
 const TASK_S: f64 = 0.08;
+const STEP_S: f64 = 1.2e-6;
+const PASSES: f64 = 10.0;
 const CELL_S: [f64; 3] = [3e-5, 1e-4, 4e-3];
 const OF_ERRORS: f64 = 0.25;
 
@@ -148,23 +151,30 @@ impl Plan {
             .iter()
             .filter_map(|own| Some((&own.subject.digest, own.size?)));
         let sizes: BTreeMap<&String, Size> = sizes.collect();
+        let cells = |task: &Task| {
+            let size = *sizes.get(&task.asked.digest)?;
+            Some((
+                size,
+                size.cells * (task.asked.refine as f64).powi(size.dim as i32),
+            ))
+        };
         let body_s = |task: &Task| {
-            sizes.get(&task.asked.digest).map_or(0.0, |size| {
-                let kind = usize::from(size.dim == 3) * (1 + usize::from(size.ends));
-                CELL_S[kind] * size.cells * (task.asked.refine as f64).powi(size.dim as i32)
+            cells(task).map_or(0.0, |(size, cells)| {
+                CELL_S[usize::from(size.dim == 3) * (1 + usize::from(size.ends))] * cells
             })
         };
         let task_s = |task: &Task| {
-            let steps = sizes
-                .get(&task.asked.digest)
-                .map_or(1, |own| own.increments);
-            let path_s = TASK_S * (1.0 + 0.1 * (steps * task.asked.increments) as f64);
-            path_s
-                + if task.looks.truth {
-                    OF_ERRORS * body_s(task)
-                } else {
-                    0.0
-                }
+            let path_s = cells(task).map_or(0.0, |(size, cells)| {
+                STEP_S * cells * (size.increments * task.asked.increments) as f64
+            });
+            // Repetitions end when patience does.
+            let repeated_s = (PASSES * path_s).min(self.repeats.patience_s + 3.0 * path_s);
+            let errors_s = if task.looks.truth {
+                OF_ERRORS * body_s(task)
+            } else {
+                0.0
+            };
+            TASK_S + repeated_s + errors_s
         };
         let mut bodies: Vec<&Task> = self.tasks.iter().collect();
         bodies.sort_by_key(|task| task.asked.body());

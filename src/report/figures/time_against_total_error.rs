@@ -144,5 +144,10 @@ fn title(rows: &[&ErrorRow], order: f64, dim: usize) -> String {
     let shares: Vec<f64> = own().map(|row| share(&row)).collect();
     let ends = [f64::min, f64::max].map(|f| shares.iter().copied().reduce(f).unwrap_or(f64::NAN));
     let [least, most] = ends.map(|share| significant(share, 1));
-    title + &format!("; enforcement {least} to {most} % of it")
+    let range = if least == most {
+        most
+    } else {
+        format!("{least} to {most}")
+    };
+    title + &format!("; enforcement {range} % of it")
 }
