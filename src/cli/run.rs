@@ -28,6 +28,9 @@ pub struct Arguments {
     /// Methods whose fields are written for pictures: none, first (the first exact method) or all
     #[arg(long, value_enum, default_value = "first")]
     fields: FieldsOf,
+    /// Increments that profiles and pictures are drawn of besides the last, e.g. 4,12
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..))]
+    increments: Vec<u16>,
     #[command(flatten)]
     output: Output,
     /// Starts from which methods look for further answers: `solved (several)` where two hold; 1 for that of the increment alone
@@ -83,10 +86,28 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
         refuse_twins("method", chosen.iter().map(|choice| choice.label.as_str()))?;
         expect::check(case)?;
     }
+    let most = cases.iter().map(|case| case.path.increments).max();
+    let mut pictured: Vec<usize> = arguments
+        .increments
+        .iter()
+        .map(|k| usize::from(*k))
+        .collect();
+    pictured.sort_unstable();
+    pictured.dedup();
+    if let Some(beyond) = pictured.iter().find(|k| Some(**k) > most) {
+        return Err(CliError::Unknown {
+            what: "increment",
+            name: beyond.to_string(),
+            known: format!("1 to {}", most.unwrap_or(0)),
+        });
+    }
     let name = only(cases.iter().map(|case| case.name.as_str()), "run");
     let claim = arguments.output.claim(name, plan)?;
     let bar = Bar::new();
-    let mut results = Results::default();
+    let mut results = Results {
+        pictured,
+        ..Results::default()
+    };
     for case in &cases {
         results.append(run_case(case, &given, settings, &bar)?);
     }

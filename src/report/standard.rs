@@ -36,6 +36,21 @@ pub fn add_figures(bundle: &mut Bundle, results: &Results) -> Result<(), ReportE
     for fields in results.fields() {
         figures::fields::add(bundle, &fields)?;
     }
+    for &increment in &results.pictured {
+        let (own, mut pictures) = (results.until(increment), Bundle::new());
+        figures::profile::add(&mut pictures, &own)?;
+        for fields in own.fields() {
+            figures::fields::add(&mut pictures, &fields)?;
+        }
+        for (name, picture) in pictures.files() {
+            let kind = [".profile.svg", ".state.svg"]
+                .into_iter()
+                .find(|end| name.ends_with(end));
+            let kind = kind.unwrap_or(".svg");
+            let own = name.trim_end_matches(kind);
+            bundle.add(format!("{own}.increment-{increment}{kind}"), picture)?;
+        }
+    }
     Ok(())
 }
 

@@ -18,6 +18,8 @@ pub struct Results {
     pub exact: Vec<ExactPoint>,
     /// Expected numbers.
     pub expectations: Vec<ExpectRow>,
+    /// Increments that have pictures, besides the last.
+    pub pictured: Vec<usize>,
 }
 
 impl Results {
@@ -26,6 +28,32 @@ impl Results {
         self.answers.extend(other.answers);
         self.exact.extend(other.exact);
         self.expectations.extend(other.expectations);
+    }
+
+    /// The runs as they were at the end of an increment; of those that came so far, the points and fields of it.
+    pub fn until(&self, increment: usize) -> Self {
+        // A path may begin with a state at rest, which is increment 0.
+        let count = |own: &Answer| {
+            let steps = own.record.found.increments.iter();
+            steps.filter(|step| step.increment <= increment).count()
+        };
+        let until = |own: &Answer| {
+            let (count, mut own) = (count(own), own.clone());
+            own.record.found.increments.truncate(count);
+            own.points.truncate(count);
+            own.fields.truncate(count);
+            own
+        };
+        let far = |own: &&Answer| own.record.found.increments.len() > count(own);
+        let exact = self
+            .exact
+            .iter()
+            .filter(|own| own.key.increment == increment);
+        Self {
+            answers: self.answers.iter().filter(far).map(until).collect(),
+            exact: exact.cloned().collect(),
+            ..Self::default()
+        }
     }
 
     /// The part of these results that is about some cases.
@@ -38,6 +66,7 @@ impl Results {
             answers: part(&self.answers, |own| wanted(&own.record.asked.case)),
             exact: part(&self.exact, |row| wanted(&row.key.case)),
             expectations: part(&self.expectations, |row| wanted(&row.key.case)),
+            pictured: self.pictured.clone(),
         }
     }
 

@@ -238,6 +238,36 @@ fn a_run_is_told_as_json_or_not_at_all() {
 }
 
 #[test]
+fn chosen_increments_have_pictures_of_their_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = [
+        "run",
+        "cyclic",
+        "-m",
+        "nsgs",
+        "-m",
+        "hybrid",
+        "--out",
+        "out",
+        "--increments",
+    ];
+    ends_with(0, &[&run[..], &["4,8,4"]].concat(), dir.path());
+    let files = files(dir.path());
+    for kind in ["profile", "state"] {
+        let own = |k: usize| {
+            files
+                .keys()
+                .find(|name| name.ends_with(&format!(".increment-{k}.{kind}.svg")))
+        };
+        let [four, eight] = [4, 8].map(|k| text(&files[own(k).unwrap()]));
+        assert!(four.contains("increment 4") && eight.contains("increment 8") && four != eight);
+        assert!(own(16).is_none());
+    }
+    let (_, told) = ends_with(2, &[&run[..], &["17"]].concat(), dir.path());
+    assert!(told.contains("known: 1 to 16"), "{told}");
+}
+
+#[test]
 fn a_missed_expectation_ends_with_1_and_is_named() {
     let dir = folder(3.0);
     let arguments = ["run", "small.toml", "--method", "b-newton", "--out", "out"];

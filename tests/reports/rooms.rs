@@ -268,8 +268,8 @@ fn imports_run_one_way() {
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 13] = [
     ("methods/src", 18_000), ("xfem/src", 22_340), ("src/files", 2075), ("src/case", 3320), ("src/model", 2931), ("src/run", 2205),
-    ("src/studies", 16_611), ("src/report", 10_440), ("src/cli", 2020), ("benches", 570), ("methods/tests", 3220), ("xfem/tests", 125),
-    ("tests", 17_885),
+    ("src/studies", 16_640), ("src/report", 10_465), ("src/cli", 2039), ("benches", 570), ("methods/tests", 3220), ("xfem/tests", 125),
+    ("tests", 17_911),
 ];
 
 /// Lines of all sources in a folder and below.

@@ -2,7 +2,7 @@
 
 use super::agreement::agreement;
 use super::kind::Kind;
-use super::runs::{Run, body, by_problem, friction, problem};
+use super::runs::{Run, body, by_problem, friction, moment};
 use crate::model::quantities::PointState;
 use crate::report::names::file_name;
 use crate::report::number::significant;
@@ -18,7 +18,7 @@ pub static KIND: Kind = Kind {
     file: "*.profile.svg",
     question: "What happens along the crack, and do the methods agree on it?",
     shows: "Contact traction p_n and |p_t| with the slip limit μ p_n, slip and, where the crack opens, normal \
-            gap along a plane crack in the last increment, with a closed form where there is one; markers tell \
+            gap along a plane crack in the last increment and in those chosen, with a closed form where there is one; markers tell \
             stick, slip and open. A file per problem with all methods that did what they claim, and one per body \
             with all friction coefficients by the first exact method.",
 };
@@ -206,7 +206,7 @@ impl<'a> Profile<'a> {
         let alike = |a, b| status(a).eq(status(b));
         let found = agreement(&methods.collect::<Vec<_>>(), &scaled, alike);
         let note = "differences as fractions of the largest traction or jump";
-        let caption = format!("{}, crack {}; {note}", problem(self.runs[0].0), self.crack);
+        let caption = format!("{}, crack {}; {note}", moment(self.runs[0].0), self.crack);
         self.figure(&found.title, &caption, &found.curves)
     }
 

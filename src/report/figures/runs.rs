@@ -41,6 +41,14 @@ pub fn problem(key: &RunKey) -> String {
     format!("{}, {}", body(key), friction(key.friction))
 }
 
+/// The same at the end of an increment, where it is not the first.
+pub fn moment(key: &RunKey) -> String {
+    match key.increment {
+        ..=1 => problem(key),
+        later => format!("{}, increment {later}", problem(key)),
+    }
+}
+
 /// Case, mesh and contact space.
 pub fn body(key: &RunKey) -> String {
     plain(&format!("{}, {}, {}", key.case, key.mesh, key.space))
