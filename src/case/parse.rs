@@ -10,7 +10,7 @@ use stickslip_xfem::material::{Dilatation, Lame, Material, Model};
 use stickslip_xfem::quadrature::Quadrature;
 
 use super::crack::{CrackSpec, crack};
-use super::error::{CaseError, Source, Span, parsed};
+use super::error::{CaseError, SHOWN, Source, Span, parsed};
 use super::exact::{ExactSpec, exact};
 use super::expect::{Expect, ProbeSpec, Runs};
 use super::load::{LoadSpec, Scene, SupportSpec, load, support};
@@ -338,7 +338,7 @@ fn each<T>(
     faultless(root.tables(key)?.into_iter().map(read))
 }
 
-/// What was read, or all its faults.
+/// What was read, or its faults, of very many the first.
 pub(crate) fn faultless<T>(
     read: impl IntoIterator<Item = Result<T, CaseError>>,
 ) -> Result<Vec<T>, CaseError> {
@@ -347,6 +347,9 @@ pub(crate) fn faultless<T>(
         match own {
             Ok(own) => good.push(own),
             Err(fault) => faults.push(fault),
+        }
+        if faults.len() > SHOWN + 1 {
+            break;
         }
     }
     CaseError::all(faults).map(|()| good)

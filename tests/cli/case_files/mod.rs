@@ -243,6 +243,12 @@ fn all_faults_of_a_file_are_told_at_once() {
     let faults = refused(&text).faults();
     let told: Vec<&str> = faults.iter().map(|own| own.value()).collect();
     assert_eq!(told, [title, tier, poisson, side]);
+    // Of sixty thousand the first, in time.
+    let many = refused(&(PLANE.to_owned() + &"\n[[load]]".repeat(60_000))).to_string();
+    assert!(
+        many.ends_with("and more") && many.lines().count() < 40,
+        "{many}"
+    );
 }
 
 #[test]
