@@ -135,8 +135,8 @@ const KEYS: [&str; 16] = [
 /// Reads and checks a case file; the file stem becomes the name of the case.
 ///
 /// # Errors
-/// All faults that do not follow from each other, of a table the first, with their places: a file that cannot be read, is larger than 1 MiB or not UTF-8, text that is
-/// not TOML, unknown or missing keys, wrong types, numbers that are not finite or out of range, contradictions.
+/// All faults that do not follow from each other, of a table the first, with their places: a file that cannot be read, is
+/// larger than 1 MiB or not UTF-8, text that is not TOML, unknown or missing keys, wrong types, numbers that are not finite or out of range, contradictions.
 pub fn read(path: impl AsRef<Path>) -> Result<Case, CaseError> {
     let path = path.as_ref();
     parse(path, read_text(path)?)

@@ -22,9 +22,9 @@ pub enum Target {
 impl Target {
     /// Its names.
     pub const ALL: [(&str, Self); 4] = [
-        ("low", Self::Tier(Tier::Low)),
-        ("mid", Self::Tier(Tier::Mid)),
-        ("high", Self::Tier(Tier::High)),
+        (Tier::Low.as_str(), Self::Tier(Tier::Low)),
+        (Tier::Mid.as_str(), Self::Tier(Tier::Mid)),
+        (Tier::High.as_str(), Self::Tier(Tier::High)),
         ("mesh", Self::Mesh),
     ];
 

@@ -31,9 +31,13 @@ pub enum Form {
 /// That of this process, settled by its first arguments.
 pub static FORM: OnceLock<Form> = OnceLock::new();
 
+pub fn form() -> Form {
+    *FORM.get_or_init(Form::default)
+}
+
 /// Prints words.
 pub fn say(text: Arguments<'_>) {
-    match FORM.get_or_init(Form::default) {
+    match form() {
         Form::Text => print(text),
         Form::Json => print(format_args!("{}", json!({ "text": text.to_string() }))),
         Form::Nothing => {}
@@ -51,7 +55,7 @@ fn print(text: Arguments<'_>) {
 
 /// Prints a table.
 pub fn show<R: Row>(rows: &[R], note: &str) {
-    match FORM.get_or_init(Form::default) {
+    match form() {
         Form::Json => print(format_args!(
             "{}",
             json!({ "table": R::NAME, "rows": objects(rows) })

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::output::{FORM, Form, warn};
+use super::output::{Form, form, warn};
 use crate::run::progress::Progress;
 
 /// Where nobody sees the bar, time between two lines [s].
@@ -27,7 +27,7 @@ impl Bar {
     /// An empty bar.
     pub fn new() -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let quiet = *FORM.get_or_init(Form::default) == Form::Nothing;
+        let quiet = form() == Form::Nothing;
         let bar = if terminal && !quiet {
             ProgressBar::new(0)
         } else {

@@ -1,5 +1,7 @@
 //! `stickslip run`: cases.
 
+use std::collections::BTreeSet;
+
 use super::advice;
 use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
@@ -87,14 +89,8 @@ pub fn run(arguments: Arguments, plan: Plan) -> Result<bool, CliError> {
         expect::check(case)?;
     }
     let most = cases.iter().map(|case| case.path.increments).max();
-    let mut pictured: Vec<usize> = arguments
-        .increments
-        .iter()
-        .map(|k| usize::from(*k))
-        .collect();
-    pictured.sort_unstable();
-    pictured.dedup();
-    if let Some(beyond) = pictured.iter().find(|k| Some(**k) > most) {
+    let pictured: BTreeSet<usize> = arguments.increments.into_iter().map(usize::from).collect();
+    if let Some(beyond) = pictured.last().filter(|k| Some(**k) > most) {
         return Err(CliError::Unknown {
             what: "increment",
             name: beyond.to_string(),

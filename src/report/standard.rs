@@ -36,6 +36,7 @@ pub fn add_figures(bundle: &mut Bundle, results: &Results) -> Result<(), ReportE
     for fields in results.fields() {
         figures::fields::add(bundle, &fields)?;
     }
+    let kinds = [&figures::profile::KIND, &figures::fields::KIND];
     for &increment in &results.pictured {
         let (own, mut pictures) = (results.until(increment), Bundle::new());
         figures::profile::add(&mut pictures, &own)?;
@@ -43,12 +44,11 @@ pub fn add_figures(bundle: &mut Bundle, results: &Results) -> Result<(), ReportE
             figures::fields::add(&mut pictures, &fields)?;
         }
         for (name, picture) in pictures.files() {
-            let kind = [".profile.svg", ".state.svg"]
-                .into_iter()
-                .find(|end| name.ends_with(end));
-            let kind = kind.unwrap_or(".svg");
-            let own = name.trim_end_matches(kind);
-            bundle.add(format!("{own}.increment-{increment}{kind}"), picture)?;
+            for end in kinds.map(|kind| kind.file.trim_start_matches('*')) {
+                if let Some(own) = name.strip_suffix(end) {
+                    bundle.add(format!("{own}.increment-{increment}{end}"), picture)?;
+                }
+            }
         }
     }
     Ok(())

@@ -79,7 +79,7 @@ fn to_mesh(mut fine: Task, errors: &OfMeshes) -> [Task; 2] {
         own.asked.tolerance = Tier::Low.tolerance().min(OF_MESH * error);
         own.asked.finer = None;
     }
-    fine.looks.fields = false;
+    (fine.looks.fields, fine.looks.curves) = (false, false);
     [own, fine]
 }
 

@@ -19,7 +19,7 @@ pub struct Results {
     /// Expected numbers.
     pub expectations: Vec<ExpectRow>,
     /// Increments that have pictures, besides the last.
-    pub pictured: Vec<usize>,
+    pub pictured: BTreeSet<usize>,
 }
 
 impl Results {

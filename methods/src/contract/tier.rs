@@ -28,7 +28,7 @@ impl Tier {
     }
 
     /// Name in case files, on the command line and in tables.
-    pub fn as_str(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self {
             Tier::Low => "low",
             Tier::Mid => "mid",
