@@ -9,6 +9,7 @@ pub mod matrix;
 pub(crate) mod multifrontal;
 pub(crate) mod plain;
 pub(crate) mod rows;
+pub(crate) mod sparse;
 pub(crate) mod spectrum;
 pub(crate) mod stiffness;
 pub(crate) mod strips;

@@ -102,6 +102,51 @@ fn space_and_floating_bodies_are_solved_as_the_judge_sees_them() {
     }
 }
 
+/// Source: the same numbers held as a full matrix, which explicit zeros make of them. Tolerance: the accuracy that the method was asked
+/// for, times the condition. A chain of 70 points in space, some without friction, held and floating.
+#[test]
+fn an_operator_of_few_entries_is_solved_as_a_full_one() {
+    let (mut rng, m) = (Random(29), 210);
+    let mut chain = skewed(&mut rng, m, 0.01);
+    for (i, row) in chain.iter_mut().enumerate() {
+        // Points beside each other alone: diagonally dominant.
+        let far = |j: usize| (i / 3).abs_diff(j / 3) > 1;
+        (0..m).filter(|j| far(*j)).for_each(|j| row[j] = 0.0);
+        row[i] += 3.0;
+    }
+    let entries = |j: usize| (0..m).filter(move |i| (i / 3).abs_diff(j / 3) <= 1);
+    let rows: Vec<usize> = (0..m).flat_map(entries).collect();
+    let values = (0..m).flat_map(|j| entries(j).map(move |i| (i, j)));
+    let values = values.map(|(i, j)| chain[i][j]).collect();
+    let ends = (0..m).map(|j| entries(j).count()).scan(0, |end, count| {
+        *end += count;
+        Some(*end)
+    });
+    let few =
+        SquareMatrix::general(m, std::iter::once(0).chain(ends).collect(), rows, values).unwrap();
+    let lift: Vec<f64> = (0..m).map(|k| f64::from(u8::from(k % 3 == 0))).collect();
+    let q: Vec<f64> = rng.vector(m).iter().map(|q| q - 0.3).collect();
+    for motions in [vec![], vec![lift]] {
+        let press: Vec<f64> = (0..m).map(|k| [-0.4, 0.1, 0.0][k % 3]).collect();
+        let load = load(press, q.clone());
+        let [few, full] = [few.clone(), square(&chain)].map(|w| {
+            let body = Elastic::from_delassus(3, w, motions.clone()).unwrap();
+            let mu = (0..70).map(|i| [0.4, 0.0, 0.7][i % 3]).collect();
+            ContactSystem::new(body, mu).unwrap()
+        });
+        let mut compared = 0;
+        for (m, outcome) in claims(takers(), &few, &load, 1e-9) {
+            let full = run(&m, &m.given, &full, &load, 1e-9);
+            let found = difference(&outcome.state.p, &full.state.p);
+            assert!(found <= 1e3 * m.accuracy, "{}: {found:e}", m.name);
+            let held = judge(&few, &load, &outcome.state).violation;
+            assert!(held <= m.accuracy.max(1e-9), "{}: {held:e}", m.name);
+            compared += 1;
+        }
+        assert!(compared >= 10, "{compared}");
+    }
+}
+
 /// The solution with the symmetric part of W does not pass for one with W.
 #[test]
 fn the_judge_does_not_take_the_symmetric_part_for_w() {

@@ -303,7 +303,7 @@ fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, from: usize, first: &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::delassus::{Delassus, MAX_CONDENSED_ROWS};
+    use crate::algebra::delassus::MAX_CONDENSED_ROWS;
     use crate::algebra::matrix::SquareMatrix;
     use crate::contract::elastic::{Elastic, ElasticParts};
 

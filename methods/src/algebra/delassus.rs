@@ -6,6 +6,7 @@ use faer::Mat;
 
 use crate::algebra::dense::{dot, mul_add, norm, refill};
 use crate::algebra::matrix::SquareMatrix;
+use crate::algebra::sparse::Sparse;
 use crate::error::MethodError;
 
 /// Largest number of contact rows condensed: W then takes 8 n² bytes, 3.2 GB.
@@ -32,6 +33,52 @@ pub trait Delassus: Send + Sync {
     /// Whether W = Wᵀ.
     fn symmetric(&self) -> bool {
         true
+    }
+
+    /// W by its entries, where few are not 0.
+    fn sparse(&self) -> Option<&Sparse> {
+        None
+    }
+
+    /// The block of some of the rows.
+    ///
+    /// # Errors
+    /// None that an operator that exists could cause.
+    fn select(&self, at: &[usize]) -> Result<Arc<dyn Delassus>, MethodError> {
+        let (mut block, mut work) = (Mat::zeros(at.len(), at.len()), Vec::new());
+        for (j, &from) in at.iter().enumerate() {
+            let column = self.column(from, &mut work);
+            let entries = block.col_as_slice_mut(j).iter_mut().zip(at);
+            entries.for_each(|(entry, &i)| *entry = column[i]);
+        }
+        Ok(Arc::new(Dense::new(block, self.symmetric())))
+    }
+
+    /// All of it, of an unsymmetric one what is not 0.
+    ///
+    /// # Errors
+    /// Entries that are not finite.
+    fn matrix(&self) -> Result<SquareMatrix, MethodError> {
+        let (m, mut work) = (self.rows(), Vec::new());
+        let (mut ends, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..m {
+            for (i, &value) in self.column(j, &mut work).iter().enumerate() {
+                if if self.symmetric() {
+                    i >= j
+                } else {
+                    value != 0.0
+                } {
+                    rows.push(i);
+                    values.push(value);
+                }
+            }
+            ends.push(values.len());
+        }
+        if self.symmetric() {
+            SquareMatrix::symmetric(m, ends, rows, values)
+        } else {
+            SquareMatrix::general(m, ends, rows, values)
+        }
     }
 
     /// v += Wᵀ p.
@@ -114,33 +161,6 @@ impl Dense {
             w,
             diagonal,
             symmetric,
-        }
-    }
-
-    /// The block of some of the rows.
-    pub fn select(&self, at: &[usize]) -> Self {
-        let block = Mat::from_fn(at.len(), at.len(), |i, j| self.w[(at[i], at[j])]);
-        Self::new(block, self.symmetric)
-    }
-
-    /// All of it, of an unsymmetric one what is not 0.
-    pub fn matrix(&self) -> Result<SquareMatrix, MethodError> {
-        let m = self.w.nrows();
-        let mut col_ptr = vec![0];
-        let (mut row_idx, mut values) = (Vec::new(), Vec::new());
-        for j in 0..m {
-            for (i, &value) in self.w.col_as_slice(j).iter().enumerate() {
-                if if self.symmetric { i >= j } else { value != 0.0 } {
-                    row_idx.push(i);
-                    values.push(value);
-                }
-            }
-            col_ptr.push(values.len());
-        }
-        if self.symmetric {
-            SquareMatrix::symmetric(m, col_ptr, row_idx, values)
-        } else {
-            SquareMatrix::general(m, col_ptr, row_idx, values)
         }
     }
 }

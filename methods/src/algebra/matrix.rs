@@ -110,6 +110,49 @@ impl SquareMatrix {
         rows.zip(self.values[own].iter().copied())
     }
 
+    /// The same matrix with both triangles held.
+    ///
+    /// # Errors
+    /// None that a matrix that exists could cause.
+    pub(crate) fn whole(&self) -> Result<Self, MethodError> {
+        if !self.symmetric {
+            return Ok(self.clone());
+        }
+        let mut columns = vec![Vec::new(); self.n];
+        // Columns in their order: what is mirrored from earlier ones stands before what a column holds itself.
+        for j in 0..self.n {
+            for (i, value) in self.column(j) {
+                columns[j].push((i, value));
+                if i != j {
+                    columns[i].push((j, value));
+                }
+            }
+        }
+        let ends = columns.iter().scan(0, |end, column| {
+            *end += column.len();
+            Some(*end)
+        });
+        let ends = std::iter::once(0).chain(ends).collect();
+        let (rows, values) = columns.into_iter().flatten().unzip();
+        Self::general(self.n, ends, rows, values)
+    }
+
+    /// The lower triangle of one that holds both, as a symmetric matrix.
+    ///
+    /// # Errors
+    /// A missing diagonal entry.
+    pub(crate) fn lower(&self) -> Result<Self, MethodError> {
+        let (mut ends, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..self.n {
+            for (i, value) in self.column(j).filter(|(i, _)| *i >= j) {
+                rows.push(i);
+                values.push(value);
+            }
+            ends.push(values.len());
+        }
+        Self::symmetric(self.n, ends, rows, values)
+    }
+
     /// The entry stored at (i, j); 0 where there is none.
     fn stored(&self, i: usize, j: usize) -> f64 {
         let own = self.col_ptr[j]..self.col_ptr[j + 1];

@@ -2,12 +2,13 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::algebra::condensation::{self, Condensed, Tractions};
-use crate::algebra::delassus::dense;
+use crate::algebra::condensation::{self, Tractions};
+use crate::algebra::delassus::{Delassus, Dense, check_rows, dense};
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
+use crate::algebra::sparse::{Sparse, held};
 use crate::algebra::strips::cholesky;
 use crate::error::MethodError;
 
@@ -29,7 +30,7 @@ pub(crate) trait Stiffness: Send + Sync {
     fn solve(&self, x: &mut [f64]) -> Result<(), MethodError>;
 
     /// W = B K⁻¹ Bᵀ on the listed rows of B, and its diagonal as [`compliances`](Self::compliances) gives it.
-    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError>;
+    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Formed, MethodError>;
 
     /// A traction operator condensed to the listed rows.
     fn tractions(
@@ -67,6 +68,9 @@ pub(crate) trait Stiffness: Send + Sync {
         false
     }
 }
+
+/// W and its diagonal.
+pub(crate) type Formed = (Arc<dyn Delassus>, Vec<f64>);
 
 /// Negative eigenvalues of W down to this multiple of its largest entry are rounding of whoever computed it.
 pub(crate) const INDEFINITE: f64 = 1e-9;
@@ -142,8 +146,9 @@ impl Stiffness for SparseStiffness {
         Ok(())
     }
 
-    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
-        condensation::condense(self.factor()?, jump, rows)
+    fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Formed, MethodError> {
+        let (w, diagonal) = condensation::condense(self.factor()?, jump, rows)?;
+        Ok((Arc::new(Dense::new(w, true)), diagonal))
     }
 
     fn tractions(
@@ -213,6 +218,10 @@ impl DelassusOnly {
     /// Whether W, symmetric, moved by [`INDEFINITE`] times its largest entry has no Cholesky factor. What is too large to be
     /// formed is not known to be.
     fn has_negative_eigenvalue(&self) -> bool {
+        if let Ok(Some(sparse)) = Sparse::of(&self.w) {
+            let largest = sparse.largest();
+            return largest > 0.0 && !sparse.is_definite(INDEFINITE * largest);
+        }
         let Ok(mut full) = dense(&self.w) else {
             return false;
         };
@@ -254,9 +263,13 @@ impl Stiffness for DelassusOnly {
         Ok(())
     }
 
-    fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Condensed, MethodError> {
+    fn delassus(&self, _: &JumpOperator, rows: &[usize]) -> Result<Formed, MethodError> {
         let diagonal = rows.iter().map(|&i| self.w.diagonal(i)).collect();
-        Ok((dense(&self.w)?, diagonal))
+        if self.modes.len() > 0 {
+            // Augmented by the rigid motions it is full.
+            check_rows(rows.len())?;
+        }
+        Ok((held(&self.w)?, diagonal))
     }
 
     fn tractions(

@@ -12,6 +12,7 @@ use std::ops::Range;
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::DenseLu;
 use crate::algebra::plain::Full;
+use crate::algebra::sparse::{Sparse, SparseLu};
 use crate::condensed::problem::ContactProblem;
 
 /// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
@@ -44,10 +45,26 @@ pub(crate) enum Law<'a> {
     Columns { e: Blocks<'a>, s: Blocks<'a> },
 }
 
+impl Law<'_> {
+    /// (L Q, Qᵀ R) of an active row and a rigid motion, of which the law's own blocks carry 1/ρ.
+    fn border(&self, place: &Place, q: &[f64], rho: f64) -> (f64, f64) {
+        let (k, own) = (place.0, place.1.clone());
+        match self {
+            Law::Rows { c, .. } => (law_border(place, c, q, rho), q[k]),
+            Law::Columns { s, .. } => {
+                let column = k - own.start;
+                (q[k], own.map(|l| q[l] * s[l][column] / rho).sum())
+            }
+        }
+    }
+}
+
 /// The system, assembled and factored. The memory of one serves the next.
 #[derive(Default)]
 pub(crate) struct Bordered {
     lu: DenseLu,
+    /// In its place where few entries of W are not 0.
+    sparse: Option<Box<SparseLu>>,
     /// Unknowns are amplitudes times this.
     amplitude: f64,
     /// Right-hand sides of the balance are divided by this.
@@ -108,9 +125,32 @@ impl Bordered {
         law: &Law<'_>,
         spring: f64,
     ) -> bool {
-        let (q, rho) = (&problem.operator.modes.q, problem.operator.rho);
         place(problem, indices, &mut self.active);
-        let active = &self.active;
+        (self.amplitude, self.balance) = match law {
+            Law::Rows { .. } => (problem.operator.rho, 1.0),
+            Law::Columns { .. } => (1.0, problem.operator.rho),
+        };
+        match w.sparse() {
+            Some(w) => {
+                let lu = self.sparse.get_or_insert_default();
+                sparse_columns(lu, problem, w, &self.active, law, spring);
+                lu.factor()
+            }
+            None => {
+                self.sparse = None;
+                self.fill(problem, w, law, spring);
+                self.lu.factor()
+            }
+        }
+    }
+
+    /// The full matrix, in place of the factors.
+    fn fill(&mut self, problem: &ContactProblem<'_>, w: &dyn Delassus, law: &Law<'_>, spring: f64) {
+        let (q, rho, active) = (
+            &problem.operator.modes.q,
+            problem.operator.rho,
+            &self.active,
+        );
         let n = active.len();
         let J = self.lu.zeros(n + q.len());
         match law {
@@ -127,31 +167,15 @@ impl Bordered {
         }
         for (j, q) in q.iter().enumerate() {
             J[(n + j, n + j)] = -spring;
-            for (b, (k, own)) in active.iter().enumerate() {
-                let (k, own) = (*k, own.clone());
-                match law {
-                    Law::Rows { c, .. } => {
-                        J[(b, n + j)] = law_border(&(k, own), c, q, rho);
-                        J[(n + j, b)] = q[k];
-                    }
-                    Law::Columns { s, .. } => {
-                        let column = k - own.start;
-                        J[(b, n + j)] = q[k];
-                        J[(n + j, b)] = own.map(|l| q[l] * s[l][column] / rho).sum();
-                    }
-                }
+            for (b, place) in active.iter().enumerate() {
+                (J[(b, n + j)], J[(n + j, b)]) = law.border(place, q, rho);
             }
         }
-        (self.amplitude, self.balance) = match law {
-            Law::Rows { .. } => (rho, 1.0),
-            Law::Columns { .. } => (1.0, rho),
-        };
-        self.lu.factor()
     }
 
-    /// The factors.
-    pub fn factors(&self) -> &DenseLu {
-        &self.lu
+    /// The factors of a full matrix.
+    pub fn factors(&self) -> Option<&DenseLu> {
+        self.sparse.is_none().then_some(&self.lu)
     }
 
     /// (x, β) for right-hand sides f on the active rows and c; `None` if they are not finite.
@@ -172,7 +196,10 @@ impl Bordered {
         let balance = c.iter().map(|c| c / self.balance);
         self.right.clear();
         self.right.extend(f.iter().copied().chain(balance));
-        let finite = self.lu.solve_into(&self.right, x);
+        let finite = match &self.sparse {
+            Some(lu) => lu.solve_into(&self.right, x),
+            None => self.lu.solve_into(&self.right, x),
+        };
         beta.clear();
         beta.extend(x.drain(f.len()..).map(|b| b / self.amplitude));
         finite
@@ -262,5 +289,76 @@ fn columns(J: &mut Full, w: &dyn Delassus, active: &[Place], e: Blocks<'_>, s: B
             // Rows of one point follow each other, so row l of this point is active row b − k + l.
             column[b + l - k] += e[l][k - point.start];
         }
+    }
+}
+
+/// The columns of the whole system where few entries of W are not 0, in place of what `lu` holds.
+fn sparse_columns(
+    lu: &mut SparseLu,
+    problem: &ContactProblem<'_>,
+    w: &Sparse,
+    active: &[Place],
+    law: &Law<'_>,
+    spring: f64,
+) {
+    let (q, rho, n) = (
+        &problem.operator.modes.q,
+        problem.operator.rho,
+        active.len(),
+    );
+    // Where each row stands among the active ones, and the rows of its point.
+    let mut at = vec![None; problem.len()];
+    (active.iter().enumerate()).for_each(|(i, (k, _))| at[*k] = Some(i));
+    let points = problem.rows.iter();
+    let around: Vec<_> = points
+        .flat_map(|own| own.clone().map(move |_| own.clone()))
+        .collect();
+    let border: Vec<Vec<(f64, f64)>> = (q.iter())
+        .map(|q| {
+            active
+                .iter()
+                .map(|place| law.border(place, q, rho))
+                .collect()
+        })
+        .collect();
+    lu.clear();
+    let mut column = Vec::new();
+    for (b, (k, own)) in active.iter().enumerate() {
+        column.clear();
+        let local = k - own.start;
+        let e = match law {
+            Law::Rows { a, c } => {
+                for (i, w) in w.entries(*k) {
+                    for row in around[i].clone() {
+                        let c = c[row][i - around[i].start];
+                        column.extend(at[row].filter(|_| c != 0.0).map(|to| (to, c * w)));
+                    }
+                }
+                a
+            }
+            Law::Columns { e, s } => {
+                for l in own.clone().filter(|l| s[*l][local] != 0.0) {
+                    let s = s[l][local];
+                    let entries = w.entries(l).filter_map(|(i, w)| Some((at[i]?, w * s)));
+                    column.extend(entries);
+                }
+                e
+            }
+        };
+        let of_point = own.clone().filter_map(|l| Some((at[l]?, e[l][local])));
+        column.extend(of_point);
+        column.extend(
+            border
+                .iter()
+                .enumerate()
+                .map(|(j, border)| (n + j, border[b].1)),
+        );
+        lu.push(&mut column);
+    }
+    for (j, border) in border.iter().enumerate() {
+        column.clear();
+        column.extend(border.iter().enumerate().map(|(b, border)| (b, border.0)));
+        column.push((n + j, -spring));
+        lu.push(&mut column);
     }
 }

@@ -12,7 +12,9 @@ use std::sync::Arc;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 
+use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::{DenseLu, along, dot, refill, solve_dense};
+use crate::algebra::sparse::SparseLu;
 use crate::algebra::spectrum::extremes;
 use crate::condensed::branches::Branches;
 use crate::condensed::pair::Pair;
@@ -33,6 +35,30 @@ enum Factor {
     Cholesky(Llt<f64>),
     /// Where W is not symmetric, or symmetric and indefinite beyond 1/k₀.
     Lu(DenseLu),
+    /// Where few entries of W are not 0.
+    Sparse(Box<SparseLu>),
+}
+
+impl Factor {
+    /// Of I + k₀ W; `None` if it is singular.
+    fn new(w: &dyn Delassus, k0: f64) -> Option<Self> {
+        if let Some(w) = w.sparse() {
+            return w.shifted(k0).map(|lu| Self::Sparse(Box::new(lu)));
+        }
+        let mut a = w.to_matrix();
+        for j in 0..a.ncols() {
+            let column = a.col_as_slice_mut(j);
+            column.iter_mut().for_each(|w| *w *= k0);
+            column[j] += 1.0;
+        }
+        let cholesky = (w.symmetric())
+            .then(|| Llt::new(a.as_ref(), Side::Lower).ok())
+            .flatten();
+        match cholesky {
+            Some(factor) => Some(Self::Cholesky(factor)),
+            None => DenseLu::new(&a).map(Self::Lu),
+        }
+    }
 }
 
 /// The factored global stage, bordered by the rigid motions.
@@ -55,21 +81,9 @@ impl GlobalStage {
 
     /// With the given k₀ in N/m.
     pub fn along(operator: Arc<ContactOperator>, k0: f64) -> Result<Self, MethodError> {
-        let mut a = operator.w.to_matrix();
-        for j in 0..a.ncols() {
-            let column = a.col_as_slice_mut(j);
-            column.iter_mut().for_each(|w| *w *= k0);
-            column[j] += 1.0;
-        }
-        let cholesky = (operator.w.symmetric())
-            .then(|| Llt::new(a.as_ref(), Side::Lower).ok())
-            .flatten();
-        let factor = match cholesky {
-            Some(factor) => Factor::Cholesky(factor),
-            None => Factor::Lu(DenseLu::new(&a).ok_or_else(|| MethodError::Refused {
-                reason: "I + k0 W is singular: W is not positive semi-definite".into(),
-            })?),
-        };
+        let factor = Factor::new(&*operator.w, k0).ok_or_else(|| MethodError::Refused {
+            reason: "I + k0 W is singular: W is not positive semi-definite".into(),
+        })?;
         let column = |q: &Vec<f64>| {
             let mut column = Vec::new();
             apply(&factor, q, &mut column);
@@ -223,6 +237,11 @@ fn apply(factor: &Factor, b: &[f64], x: &mut Vec<f64>) {
             factor.solve_in_place(MatMut::from_column_major_slice_mut(x, b.len(), 1));
         }
         Factor::Lu(factor) => {
+            if !factor.solve_into(b, x) {
+                x.fill(f64::NAN);
+            }
+        }
+        Factor::Sparse(factor) => {
             if !factor.solve_into(b, x) {
                 x.fill(f64::NAN);
             }

@@ -54,26 +54,42 @@ impl Sweeps {
     ) -> usize {
         problem.counters.local_solves += self.local.len();
         let (problem, w) = (&*problem, saddle.w());
+        if let Some(w) = w.sparse() {
+            let add = |rows, step, v: &mut [f64]| w.add_columns(rows, step, v);
+            return self.points(problem, add, omega, x, branches);
+        }
+        let mut work = Default::default();
         if w.rows() < SHORT {
-            self.points(problem, w, omega, x, branches)
+            let add = |rows, step, v: &mut [f64]| add_columns(w, rows, step, &mut work, v);
+            self.points(problem, add, omega, x, branches)
         } else {
             wide(
                 #[inline(always)]
-                || self.points(problem, w, omega, x, branches),
+                || {
+                    self.points(
+                        problem,
+                        #[inline(always)]
+                        |rows, step, v| add_columns(w, rows, step, &mut work, v),
+                        omega,
+                        x,
+                        branches,
+                    )
+                },
             )
         }
     }
 
+    /// `add`: v += W δP of the rows of a point.
     #[inline(always)]
     fn points(
         &self,
         problem: &ContactProblem<'_>,
-        w: &dyn Delassus,
+        mut add: impl FnMut(Range<usize>, [f64; 3], &mut [f64]),
         omega: f64,
         x: &mut Iterate,
         branches: &mut [Branch],
     ) -> usize {
-        let (mut work, mut changes) = (Default::default(), 0);
+        let mut changes = 0;
         for (i, (local, block)) in self.local.iter().enumerate() {
             let rows = problem.rows.of(i);
             let mut q = [0.0; 3];
@@ -90,7 +106,7 @@ impl Sweeps {
                 x.p[k] += *step;
             }
             if step != [0.0; 3] {
-                add_columns(w, rows, step, &mut work, &mut x.v);
+                add(rows, step, &mut x.v);
             }
             changes += usize::from(std::mem::replace(&mut branches[i], branch) != branch);
         }

@@ -200,9 +200,16 @@ fn upper_triangle(problem: &ContactProblem<'_>, rho: f64) -> CscMatrix<f64> {
     let (n, mut work) = (problem.len(), Vec::new());
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for j in 0..n {
-        let w = problem.operator.w.column(j, &mut work);
-        rows.extend(0..=j);
-        values.extend(w[..=j].iter().map(|w| rho * w));
+        if let Some(w) = problem.operator.w.sparse() {
+            for (i, w) in w.entries(j).filter(|(i, _)| *i <= j) {
+                rows.push(i);
+                values.push(rho * w);
+            }
+        } else {
+            let w = problem.operator.w.column(j, &mut work);
+            rows.extend(0..=j);
+            values.extend(w[..=j].iter().map(|w| rho * w));
+        }
         starts.push(rows.len());
     }
     CscMatrix::new(n, n, starts, rows, values)

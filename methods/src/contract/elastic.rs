@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use crate::algebra::condensation::Tractions;
-use crate::algebra::delassus::{Delassus, Dense};
+use crate::algebra::delassus::Delassus;
 use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
@@ -69,6 +69,9 @@ pub struct ElasticTimings {
     pub on_body_s: f64,
 }
 
+/// What is computed on first use.
+type Shared<T> = OnceLock<Result<T, MethodError>>;
+
 /// The elastic body, shared by all systems on it through an [`Arc`]. The factor of K and the Delassus operator are
 /// computed on first use.
 pub struct Elastic {
@@ -79,10 +82,10 @@ pub struct Elastic {
     floating: Vec<Vec<f64>>,
     frictionless: bool,
     traction: Option<JumpOperator>,
-    diagonal: OnceLock<Result<Vec<f64>, MethodError>>,
-    delassus: OnceLock<Result<(Arc<Dense>, f64), MethodError>>,
-    condensed: OnceLock<Result<Arc<ContactOperator>, MethodError>>,
-    tractions: OnceLock<Result<(Arc<Tractions>, f64), MethodError>>,
+    diagonal: Shared<Vec<f64>>,
+    delassus: Shared<(Arc<dyn Delassus>, f64)>,
+    condensed: Shared<Arc<ContactOperator>>,
+    tractions: Shared<(Arc<Tractions>, f64)>,
     solves: AtomicUsize,
     on_body_ns: AtomicU64,
     products: AtomicUsize,
@@ -376,15 +379,13 @@ impl Elastic {
     }
 
     /// W on [`rows`](Self::rows), formed unless it exists.
-    pub(crate) fn formed(&self) -> Result<Arc<Dense>, MethodError> {
+    pub(crate) fn formed(&self) -> Result<Arc<dyn Delassus>, MethodError> {
         let build = || {
             self.factorise()?;
             let clock = Instant::now();
             let rows = self.rows();
             let (w, diagonal) = self.stiffness.delassus(&self.jump, &rows.source)?;
             self.diagonal.get_or_init(|| Ok(diagonal));
-            let symmetric = self.asymmetry() == 0.0;
-            let w = Arc::new(Dense::new(w, symmetric));
             Ok((w, clock.elapsed().as_secs_f64()))
         };
         let formed = self.delassus.get_or_init(build).as_ref();

@@ -134,7 +134,7 @@ impl ContactSystem {
             if from == self.rows {
                 return self.elastic.condensed();
             }
-            let w = Arc::new(whole.select(&self.rows.positions_in(&from)));
+            let w = whole.select(&self.rows.positions_in(&from))?;
             self.elastic.operator(&self.rows, w).map(Arc::new)
         };
         match form {

@@ -234,9 +234,13 @@ impl CondensedStep {
             return system.solve_into(f, &balance, solution, beta);
         }
         let mut failed = false;
-        if *held == Some(false) && !hold && !*spoilt {
+        if *held == Some(false)
+            && !hold
+            && !*spoilt
+            && let Some(factors) = system.factors()
+        {
             f.extend(balance.iter());
-            match factored.solve(problem, system.factors(), rows, f) {
+            match factored.solve(problem, factors, rows, f) {
                 Solved::Step(found) => {
                     *solution = found;
                     let amplitudes = solution.drain(active.len()..);

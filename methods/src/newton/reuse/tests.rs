@@ -99,7 +99,8 @@ fn steps_with_earlier_factors(motions: Vec<Vec<f64>>) {
                 let (law, f) = (Law::Rows { a: &a, c: &c }, &f[..active.len()]);
                 let (changes, balance) = (earlier.changes(rows), &[0.7, -0.2][..problem.modes()]);
                 let right = [f, balance].concat();
-                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &right);
+                let found =
+                    earlier.solve_changed(problem, base.factors().unwrap(), rows, &changes, &right);
                 let mut whole = Bordered::new(problem, &active, &law).unwrap();
                 let (mut exact, beta) = whole.solve(f, balance).unwrap();
                 exact.extend(beta.iter().map(|beta| beta * problem.operator.rho));
@@ -134,7 +135,7 @@ fn a_tangent_that_has_become_singular_is_told() {
         let rows = rows_of(problem, &all, (&a, &c));
         let f: Vec<f64> = (0..ROWS).map(|k| number(twin(k), 2)).collect();
         let changes = earlier.changes(rows);
-        let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &f);
+        let found = earlier.solve_changed(problem, base.factors().unwrap(), rows, &changes, &f);
         assert!(found.is_none(), "{found:?}");
     });
 }
@@ -158,7 +159,8 @@ fn a_piece_that_gets_loose_is_told() {
                 let rows = of(&all[first..]);
                 let right: Vec<f64> = (first..=ROWS).map(|k| number(k, 2)).collect();
                 let changes = earlier.changes(rows);
-                let found = earlier.solve_changed(problem, base.factors(), rows, &changes, &right);
+                let found =
+                    earlier.solve_changed(problem, base.factors().unwrap(), rows, &changes, &right);
                 let whole = Bordered::new(problem, rows.active, &law);
                 assert_eq!(
                     (found.is_some(), whole.is_some()),
