@@ -202,11 +202,6 @@ fn redundant(problem: &mut ContactProblem<'_>) -> bool {
     Bordered::new(problem, &all, &law).is_none()
 }
 
-/// Whether a method that was tried ends the whole; iterations that have run out the sweeps see themselves.
-fn is_final(end: &End) -> bool {
-    [Status::Converged, Status::Rounding, Status::Stopped].contains(&end.status)
-}
-
 /// Runs of Newton's method, each stopped soon after it makes no progress.
 struct NewtonRuns<'s> {
     /// r of the next one: as given, from the first that fails 1.
@@ -239,7 +234,7 @@ impl NewtonRuns<'_> {
         let end = newton.run(problem, start, monitor);
         (self.multiple, *self.tangent) = (1.0, newton.tangent);
         let end = end?;
-        Ok(is_final(&end).then_some(end))
+        Ok(end.is_final().then_some(end))
     }
 
     fn newton<S: Scheme>(&mut self, scheme: S) -> Newton<S> {
@@ -332,7 +327,7 @@ impl<'s> Rounds<'s> {
             let limits = Limits::new(self.share(problem), interior_point::PATIENCE);
             problem.begin_again();
             let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
-            if is_final(&end) {
+            if end.is_final() {
                 return Ok(Some(end));
             }
         }
@@ -352,11 +347,11 @@ impl<'s> Rounds<'s> {
         *self.runs.tangent = newton.tangent;
         let mut end = end?;
         // Cone programs are minimisations.
-        if !is_final(&end) && problem.operator.w.symmetric() {
+        if !end.is_final() && problem.operator.w.symmetric() {
             problem.begin_again();
             end = socp::within(self.share(problem)).iterate(problem, monitor)?;
         }
-        Ok(is_final(&end).then_some(end))
+        Ok(end.is_final().then_some(end))
     }
 
     /// Prepares the next round; false if nothing is left to try.

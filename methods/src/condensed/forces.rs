@@ -46,3 +46,10 @@ pub struct End {
     /// The last iterate.
     pub at: Forces,
 }
+
+impl End {
+    /// Whether nothing is to be tried after it; iterations that have run out the next method sees itself.
+    pub(crate) fn is_final(&self) -> bool {
+        [Status::Converged, Status::Rounding, Status::Stopped].contains(&self.status)
+    }
+}

@@ -39,6 +39,15 @@ pub(crate) struct Products {
 }
 
 impl Products {
+    /// self + t other.
+    pub fn plus(&self, t: f64, other: &Products) -> Self {
+        Self {
+            normal: self.normal + t * other.normal,
+            scalar: self.scalar + t * other.scalar,
+            vector: [0, 1].map(|k| self.vector[k] + t * other.vector[k]),
+        }
+    }
+
     /// Distance to ν; `second` are the products of a step, its error of second order.
     pub fn lack(&self, nu: f64, second: &Products) -> Self {
         Self {
@@ -57,21 +66,36 @@ pub(crate) struct PathRow {
 }
 
 impl ConePoint<'_> {
-    /// The bilinear products.
+    /// The products.
     pub fn products(&self) -> Products {
-        let (P, v) = (self.P, self.v);
+        self.products_with(self)
+    }
+
+    /// The symmetric bilinear form whose square they are.
+    pub fn products_with(&self, other: &ConePoint<'_>) -> Products {
+        let ((P, v), (R, w)) = ((self.P, self.v), (other.P, other.v));
         let mut result = Products {
-            normal: P[0] * v[0],
+            normal: 0.5 * (P[0] * w[0] + R[0] * v[0]),
             ..Default::default()
         };
         if P.len() > 1 {
-            result.scalar = P[0] * self.lambda;
+            result.scalar = 0.5 * (P[0] * other.lambda + R[0] * self.lambda);
         }
         for k in 1..P.len() {
-            result.scalar += P[k] * v[k] / self.mu;
-            result.vector[k - 1] = self.lambda * P[k] / self.mu + P[0] * v[k];
+            result.scalar += 0.5 * (P[k] * w[k] + R[k] * v[k]) / self.mu;
+            let forces = 0.5 * (other.lambda * P[k] + self.lambda * R[k]) / self.mu;
+            result.vector[k - 1] = forces + 0.5 * (P[0] * w[k] + R[0] * v[k]);
         }
         result
+    }
+
+    /// Whether the point is inside all cones.
+    pub fn is_inside(&self) -> bool {
+        let outside = |bound: f64, x: &[f64]| x.len() > 1 && tangential_norm(x) >= bound;
+        self.P[0] > 0.0
+            && self.v[0] > 0.0
+            && !outside(self.mu * self.P[0], self.P)
+            && !outside(self.lambda, self.v)
     }
 
     /// The same after t times a step.

@@ -15,8 +15,8 @@
 //! corrector:  Newton's direction for σ ν, σ = (νᵃ/ν)³, with the products of δᵃ as errors of second order
 //! x <- x + t δ                                   t = min(1, fraction · longest step)
 //! ```
-//! δv and δλ are eliminated, which leaves one dense LU of m + |β| rows for both directions (the equations stand in
-//! `newton/central_path.rs`). The directions are those of the Jordan product itself, without a scaling that would make
+//! δv and δλ are eliminated, which leaves one LU of m + |β| rows for both directions (the equations stand in
+//! `newton/path_equations.rs`). The directions are those of the Jordan product itself, without a scaling that would make
 //! them symmetric: friction is not, and the matrix stays regular at the solution, so that the last digits are not lost.
 //!
 //! # Options
@@ -40,18 +40,16 @@
 
 #![allow(non_snake_case)]
 
-use std::ops::Range;
-
-use crate::algebra::dense::{add, refill};
+use crate::algebra::dense::refill;
 use crate::condensed::branches::Branches;
-use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::forces::{End, Ended};
 use crate::condensed::method::CondensedMethod;
-use crate::condensed::point_row::{Bordered, Law};
 use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::options::options;
 use crate::contract::registry::{Method, Needs};
 use crate::contract::state::Monitor;
-use crate::newton::central_path::{ConePoint, PathRow, Products, move_inside};
+use crate::newton::central_path::Products;
+use crate::newton::path_equations::{Iterate, Lack, PathEquations};
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -81,17 +79,6 @@ const JAMMED: f64 = 0.02;
 /// Least depth of the start inside the cones, relative to the reference force per point.
 const SHALLOWEST: f64 = 0.1;
 
-/// Unknowns of the method, or a step of them.
-#[derive(Default)]
-struct Iterate {
-    P: Vec<f64>,
-    beta: Vec<f64>,
-    /// Equal to the jump of P and β only once a full step was taken.
-    v: Vec<f64>,
-    /// One per point.
-    lambda: Vec<f64>,
-}
-
 impl CondensedMethod for InteriorPoint {
     fn needs(&self) -> Needs {
         Needs::ANY_OPERATOR
@@ -113,7 +100,7 @@ pub(crate) fn along_path(
     let (mut at, mut v) = (problem.start(), Vec::new());
     let mut branches = Branches::default();
     let (mut x, mut step) = (Iterate::default(), Iterate::default());
-    let mut equations = PathEquations::default();
+    let (mut equations, mut lack) = (PathEquations::default(), Lack::default());
     let (mut on_path, mut depth) = (false, 0.0);
 
     let status = loop {
@@ -130,14 +117,14 @@ pub(crate) fn along_path(
             x.begin(problem, &at, &v, depth);
         }
         problem.counters.factorisations += 1;
-        if !equations.factor(problem, &x) || !equations.solve(problem, &x, &mut step) {
+        let found = equations.factor(problem, &x)
+            && predict_and_correct(problem, &mut equations, &x, &mut lack, &mut step);
+        if !found {
             break problem.singular();
         }
         let t = x.step_length(problem, &step, fraction.max(1.0 - violation));
         x.move_along(t, &step);
-        at.p.clone_from(&x.P);
-        problem.rebalance(&mut at.p);
-        at.beta.clone_from(&x.beta);
+        x.forces(problem, &mut at);
         on_path = t >= JAMMED;
     };
     Ok(End { status, at })
@@ -153,49 +140,32 @@ fn next_depth(before: f64, P: &[f64], violation: f64) -> f64 {
     }
 }
 
-impl Iterate {
-    /// `start` and its jump, moved inside the cones by `depth` times the reference force per point.
-    fn begin(&mut self, problem: &ContactProblem<'_>, start: &Forces, jump: &[f64], depth: f64) {
-        let points = problem.rows.points();
-        let force = depth * problem.reference_force() / (points as f64).sqrt();
-        let length = force / problem.operator.rho;
-        let Self { P, beta, v, lambda } = self;
-        P.clone_from(&start.p);
-        beta.clone_from(&start.beta);
-        jump.clone_into(v);
-        let point = |(i, own): (usize, Range<usize>)| {
-            let (P, v) = (&mut P[own.clone()], &mut v[own]);
-            move_inside(problem.friction(i), P, v, force, length)
-        };
-        refill(lambda, problem.rows.iter().enumerate().map(point));
+/// Mehrotra's direction in place of `step`: predictor, then the corrector that aims at σ ν. False if it is not finite.
+fn predict_and_correct(
+    problem: &ContactProblem<'_>,
+    equations: &mut PathEquations,
+    x: &Iterate,
+    lack: &mut Lack,
+    step: &mut Iterate,
+) -> bool {
+    lack.read(problem, x);
+    if !equations.direction(problem, x, lack, step) {
+        return false;
     }
-
-    fn at(&self, problem: &ContactProblem<'_>, i: usize) -> ConePoint<'_> {
-        let rows = problem.rows.of(i);
-        ConePoint {
-            mu: problem.friction(i),
-            P: &self.P[rows.clone()],
-            v: &self.v[rows],
-            lambda: self.lambda[i],
-        }
-    }
-
-    /// self := self + t step.
-    fn move_along(&mut self, t: f64, step: &Iterate) {
-        add(t, &step.P, &mut self.P);
-        add(t, &step.beta, &mut self.beta);
-        add(t, &step.v, &mut self.v);
-        add(t, &step.lambda, &mut self.lambda);
-    }
-
-    /// min(1, `fraction` · longest step inside all cones).
-    fn step_length(&self, problem: &ContactProblem<'_>, step: &Iterate, fraction: f64) -> f64 {
-        let points = 0..problem.rows.points();
-        fraction
-            * points.fold(1.0 / fraction, |t, i| {
-                self.at(problem, i).step_length(&step.at(problem, i), t)
-            })
-    }
+    let t = x.step_length(problem, step, 1.0);
+    let now = |i: usize| x.at(problem, i).products();
+    let nu = mean(problem, now);
+    let after = mean(problem, |i| {
+        x.at(problem, i).products_after(t, &step.at(problem, i))
+    });
+    let sigma = (after / nu).clamp(0.0, 1.0).powi(3);
+    let second = |i: usize| step.at(problem, i).products();
+    let points = 0..problem.rows.points();
+    refill(
+        &mut lack.products,
+        points.map(|i| now(i).lack(sigma * nu, &second(i))),
+    );
+    equations.direction(problem, x, lack, step)
 }
 
 /// ν: the mean of the points' products over all cones, two per point with friction and one per point without.
@@ -206,103 +176,4 @@ fn mean(problem: &ContactProblem<'_>, products: impl Fn(usize) -> Products) -> f
         .sum();
     let sum = |p: Products| p.normal + p.scalar;
     points.map(|i| sum(products(i))).sum::<f64>() / cones as f64
-}
-
-/// Newton's equations at one iterate, condensed to (P, β) and factored.
-#[derive(Default)]
-struct PathEquations {
-    system: Bordered,
-    /// All rows.
-    rows: Vec<usize>,
-    /// Coefficients of δP and δv by row, scaled like all of the row to unit size.
-    a: Vec<[f64; 3]>,
-    c: Vec<[f64; 3]>,
-    scale: Vec<f64>,
-    /// Difference of v from the jump of P and β.
-    dv: Vec<f64>,
-    /// By point, what the products lack to their targets.
-    lack: Vec<Products>,
-    /// Right-hand sides of a direction.
-    f: Vec<f64>,
-}
-
-impl PathEquations {
-    /// Assembles and factors them; false if the matrix is singular.
-    fn factor(&mut self, problem: &ContactProblem<'_>, x: &Iterate) -> bool {
-        let Self { a, c, scale, .. } = self;
-        a.clear();
-        c.clear();
-        scale.clear();
-        for (i, own) in problem.rows.iter().enumerate() {
-            for PathRow { a: of_p, c: of_v } in
-                x.at(problem, i).equations().into_iter().take(own.len())
-            {
-                let size = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let s = 1.0 / (size(&of_p) + size(&of_v) / problem.operator.rho);
-                a.push(of_p.map(|x| x * s));
-                c.push(of_v.map(|x| x * s));
-                scale.push(s);
-            }
-        }
-        refill(&mut self.rows, 0..problem.len());
-        problem.jump_into(&x.P, &x.beta, &mut self.dv);
-        add(-1.0, &x.v, &mut self.dv);
-        (self.system).factor_held(problem, &self.rows, &Law::Rows { a, c })
-    }
-
-    /// Mehrotra's direction in place of `step`: predictor, then the corrector that aims at σ ν. False if it is not finite.
-    fn solve(&mut self, problem: &ContactProblem<'_>, x: &Iterate, step: &mut Iterate) -> bool {
-        let points = 0..problem.rows.points();
-        let now = |i: usize| x.at(problem, i).products();
-        let none = Products::default();
-        refill(
-            &mut self.lack,
-            points.clone().map(|i| now(i).lack(0.0, &none)),
-        );
-        if !self.direction(problem, x, step) {
-            return false;
-        }
-        let t = x.step_length(problem, step, 1.0);
-        let nu = mean(problem, now);
-        let after = mean(problem, |i| {
-            x.at(problem, i).products_after(t, &step.at(problem, i))
-        });
-        let sigma = (after / nu).clamp(0.0, 1.0).powi(3);
-        let second = |i: usize| step.at(problem, i).products();
-        refill(
-            &mut self.lack,
-            points.map(|i| now(i).lack(sigma * nu, &second(i))),
-        );
-        self.direction(problem, x, step)
-    }
-
-    /// The direction that makes up for the lack and for v ≠ q + W P + Q β, Qᵀ P ≠ c; false if it is not finite.
-    fn direction(&mut self, problem: &ContactProblem<'_>, x: &Iterate, step: &mut Iterate) -> bool {
-        self.f.clear();
-        for ((i, own), lack) in problem.rows.iter().enumerate().zip(&self.lack) {
-            let h = x.at(problem, i).right_side(lack);
-            for (k, h) in own.clone().zip(h) {
-                let known: f64 = self.dv[own.clone()]
-                    .iter()
-                    .zip(self.c[k])
-                    .map(|(v, c)| v * c)
-                    .sum();
-                self.f.push(self.scale[k] * h - known);
-            }
-        }
-        let Iterate { P, beta, v, lambda } = step;
-        let balance = problem.missing(&x.P);
-        if !self.system.solve_into(&self.f, &balance, P, beta) {
-            return false;
-        }
-        v.clone_from(&self.dv);
-        problem.operator.w.apply_add(P, v);
-        problem.operator.modes.add(beta, v);
-        let points = problem.rows.iter().zip(&self.lack).enumerate();
-        let step_of = |(i, (own, lack)): (usize, (Range<usize>, &Products))| {
-            x.at(problem, i).lambda_step(lack, &P[own.clone()], &v[own])
-        };
-        refill(lambda, points.map(step_of));
-        true
-    }
 }

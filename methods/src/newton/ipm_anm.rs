@@ -1,0 +1,328 @@
+//! Interior-point method that follows its path by power series.
+//!
+//! Nguyen, Acary & Armand, asymptotic numerical method in interior-point methods for frictional contact (2025); the series:
+//! Cochelin, Damil & Potier-Ferry, Int. J. Numer. Meth. Engng 37 (1994) 1187. Written here for the cones of `interior-point`.
+//!
+//! ```text
+//! F(x) = (v − q − W P − Q β,  Qᵀ P − c,  P_n g,  (P_n, P_t/μ) ∘ (λ, d)),  x = (P, β, v, λ)      quadratic in x; F = 0: the laws
+//! F(x) = σ² F(x₀)                            a path from x₀ inside the cones, σ = 1, to a solution, σ = 0; it never leaves them
+//!
+//! x(a) = x + Σ aᵏ x_k,  σ(a) = σ + Σ aᵏ σ_k   by arc length a: ⟨x_1, x_1⟩ + σ_1² = 1,  ⟨x_k, x_1⟩ + σ_k σ_1 = 0
+//! F'(x) x_k − 2σ σ_k F(x₀) = Σ_{0<i<k} (σ_i σ_{k−i} F(x₀) − B(x_i, x_{k−i}))                 B: the quadratic part
+//! a = (ε |x_1| / |x_N|)^(1/(N−1))            where the last term is ε of the first
+//! ```
+//! One LU a step for all N terms and for a Newton correction of the last step's rest. By arc length the path may turn back in σ, as
+//! it does where friction lets solutions vanish; a method that lowers σ stalls there. In σ², not σ, points that neither press nor open
+//! at the solution leave the path smooth. ⟨·,·⟩ is taken in units of the reference force and jump.
+//!
+//! # Options
+//! `order`: N. `accuracy`: ε. `max_iterations`: steps.
+//!
+//! # Guarantees
+//! F' is regular along the path for almost every start; a path that stays bounded ends in a solution. Redundant points are no
+//! obstacle: inside the cones the matrix is regular. Of all methods here it solves most, and it is the slowest on what others solve:
+//! 20 to 40 steps there, hundreds where the path winds.
+//!
+//! # Failure modes
+//! Ends with `max-iterations` where the path winds for longer, or runs away to infinity: no solution need exist.
+//!
+//! # Skips
+//! Points without friction have no cone. No line search, no switching of branches.
+
+use crate::algebra::dense::dot;
+use crate::condensed::branches::Branches;
+use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::method::CondensedMethod;
+use crate::condensed::problem::{Check, ContactProblem, Limits};
+use crate::contract::options::options;
+use crate::contract::registry::{Method, Needs};
+use crate::contract::state::{Monitor, Status};
+use crate::newton::iteration::Newton;
+use crate::newton::path_equations::{Iterate, Lack, PathEquations};
+use crate::newton::pdas::Sets;
+use crate::newton::step::Tangent;
+
+/// Registry entry.
+pub static METHOD: Method = Method {
+    name: "ipm-anm",
+    label: "Interior point by series",
+    reference: "Nguyen, Acary & Armand (2025); Cochelin, Damil & Potier-Ferry, Int. J. Numer. Meth. Engng 37 (1994) 1187",
+    summary: "follows the path of an interior-point method by power series in its arc length, around turns",
+    exact: true,
+    options: IpmAnm::OPTIONS,
+    source: include_str!("ipm_anm.rs"),
+    build: |options| Box::new(IpmAnm::new(options)),
+};
+
+options! {
+    IpmAnm {
+        order: Count(20, 2, 100), "terms of the series of a step";
+        accuracy: Real(1e-5, 1e-14, 0.1), "last term of a step, relative to the first";
+        max_iterations: Count(2000, 1, 1_000_000), "steps before giving up";
+    }
+}
+
+/// σ below which Newton's method is tried from the path, and again each time that it has fallen to this part.
+const NEAR: f64 = 1e-2;
+const AGAIN: f64 = 0.1;
+/// Newton steps without progress after which the path is taken up again.
+const PATIENCE: usize = 5;
+/// A step that leaves the cones or σ > 0 is shortened by this factor.
+const SHORTER: f64 = 0.8;
+/// Most often that a step is shortened: then rounding has taken over.
+const MOST_CUTS: usize = 100;
+/// Longest step: of a series that ends, as without friction, the last term is no bound.
+const LONGEST: f64 = 1e6;
+/// The step to the end of the path leaves at most this part of σ.
+const LEFT: f64 = 1e-3;
+
+impl CondensedMethod for IpmAnm {
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
+    fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
+        let limits = Limits::new(self.max_iterations, usize::MAX / 2);
+        along_series(problem, *self, limits, monitor)
+    }
+}
+
+/// The loop, from the start of the increment until it ends.
+pub(crate) fn along_series(
+    problem: &mut ContactProblem<'_>,
+    settings: IpmAnm,
+    limits: Limits,
+    monitor: &mut dyn Monitor,
+) -> Ended {
+    let (mut at, mut v) = (problem.start(), Vec::new());
+    problem.jump_into(&at.p, &at.beta, &mut v);
+    let (mut path, mut branches) = (Path::from(problem, &at, &v), Branches::default());
+    let mut cross = NEAR;
+    let status = loop {
+        problem.jump_into(&at.p, &at.beta, &mut v);
+        let changes = branches.changes(problem, &at.p, &v);
+        let violation = problem.violation(&at.p, &v);
+        match problem.check(violation, (&at.p, &at.beta), changes, limits, monitor)? {
+            Check::GoOn => {}
+            Check::Corrected => continue,
+            Check::End(status) => break status,
+        }
+        problem.counters.factorisations += 1;
+        if !path.expand(problem, settings.order) {
+            break problem.singular();
+        }
+        if !path.advance(problem, settings.accuracy) {
+            break Status::Stalled;
+        }
+        path.here.x.forces(problem, &mut at);
+        if path.here.sigma < cross {
+            cross = AGAIN * path.here.sigma;
+            let end = cross_over(problem, &at, limits.iterations, monitor)?;
+            if end.is_final() {
+                return Ok(end);
+            }
+        }
+    };
+    Ok(End { status, at })
+}
+
+/// Newton's method from a place on the path, given up soon: it knows the states of the points, or does not.
+fn cross_over(
+    problem: &mut ContactProblem<'_>,
+    at: &Forces,
+    most: usize,
+    monitor: &mut dyn Monitor,
+) -> Ended {
+    problem.begin_phase();
+    let mut newton = Newton {
+        scheme: Sets,
+        multiple: 1.0,
+        limits: Limits::new(most, PATIENCE),
+        line_search: true,
+        rescue: false,
+        tangent: Tangent::default(),
+    };
+    let end = newton.run(problem, at.clone(), monitor);
+    problem.begin_phase();
+    end
+}
+
+/// A place on the path, a term of its series, or its tangent.
+#[derive(Clone, Default)]
+struct Place {
+    x: Iterate,
+    sigma: f64,
+}
+
+/// Where the path stands, and its series there.
+struct Path {
+    here: Place,
+    /// −F(x₀).
+    first: Lack,
+    /// Terms from x_1 on.
+    series: Vec<Place>,
+    /// Its direction at the end of the last step.
+    tangent: Option<Place>,
+    /// Newton's correction at fixed σ.
+    correction: Iterate,
+    equations: PathEquations,
+    lack: Lack,
+}
+
+impl Path {
+    /// From inside the cones, where σ = 1.
+    fn from(problem: &ContactProblem<'_>, start: &Forces, jump: &[f64]) -> Self {
+        let (mut x, mut first) = (Iterate::default(), Lack::default());
+        x.begin(problem, start, jump, 1.0);
+        first.read(problem, &x);
+        Self {
+            here: Place { x, sigma: 1.0 },
+            first,
+            series: Vec::new(),
+            tangent: None,
+            correction: Iterate::default(),
+            equations: PathEquations::default(),
+            lack: Lack::default(),
+        }
+    }
+
+    /// The series at this place, and the correction; false if the matrix is singular.
+    fn expand(&mut self, problem: &ContactProblem<'_>, order: usize) -> bool {
+        let Self {
+            here,
+            first,
+            equations,
+            lack,
+            ..
+        } = self;
+        let (x, sigma) = (&here.x, here.sigma);
+        if !equations.factor(problem, x) {
+            return false;
+        }
+        lack.read(problem, x);
+        lack.add(-sigma * sigma, first);
+        let mut regular = equations.direction(problem, x, lack, &mut self.correction);
+        // x_k = σ_k y + z_k with F' y = 2σ F(x₀).
+        let mut y = Iterate::default();
+        lack.clone_from(first);
+        lack.scale(-2.0 * sigma);
+        regular &= equations.direction(problem, x, lack, &mut y);
+        let square = 1.0 + product(problem, &y, &y);
+        let ahead = (self.tangent.as_ref()).map_or(-1.0, |t| product(problem, &y, &t.x) + t.sigma);
+        let sigma = square.sqrt().recip().copysign(ahead);
+        self.series.clear();
+        let mut x_1 = y.clone();
+        x_1.scale(sigma);
+        self.series.push(Place { x: x_1, sigma });
+        for _ in 2..=order {
+            let pairs = || self.series.iter().zip(self.series.iter().rev());
+            let squares: f64 = pairs().map(|(a, b)| a.sigma * b.sigma).sum();
+            lack.clone_from(first);
+            lack.scale(-squares);
+            for (a, b) in pairs() {
+                for (i, own) in lack.products.iter_mut().enumerate() {
+                    let pair = a.x.at(problem, i).products_with(&b.x.at(problem, i));
+                    *own = own.plus(-1.0, &pair);
+                }
+            }
+            let mut term = Place::default();
+            regular &= equations.direction(problem, x, lack, &mut term.x);
+            term.sigma = -product(problem, &term.x, &y) / square;
+            term.x.move_along(term.sigma, &y);
+            self.series.push(term);
+        }
+        regular
+    }
+
+    /// Along the series as far as it is accurate, inside the cones and above σ = 0; false if that is nowhere.
+    fn advance(&mut self, problem: &ContactProblem<'_>, accuracy: f64) -> bool {
+        let (Some(first), Some(last)) = (self.series.first(), self.series.last()) else {
+            return false;
+        };
+        let size = |term: &Place| (product(problem, &term.x, &term.x) + term.sigma.powi(2)).sqrt();
+        let ratio = accuracy * size(first) / size(last);
+        let mut a = ratio
+            .powf(1.0 / (self.series.len() - 1) as f64)
+            .min(LONGEST);
+        for _ in 0..MOST_CUTS {
+            if self.sigma(a) <= 0.0 {
+                a = self.before_the_end(a);
+            }
+            let next = self.at(a);
+            if next.x.is_inside(problem) {
+                self.tangent = Some(self.derivative(a));
+                self.here = next;
+                let mut corrected = self.here.x.clone();
+                corrected.move_along(1.0, &self.correction);
+                if corrected.is_inside(problem) {
+                    self.here.x = corrected;
+                }
+                return true;
+            }
+            a *= SHORTER;
+        }
+        false
+    }
+
+    /// x(a), σ(a).
+    fn at(&self, a: f64) -> Place {
+        let terms = self.series.iter().rev().chain([&self.here]);
+        Place::horner(a, terms.map(|term| (1.0, term)))
+    }
+
+    /// The derivatives of both.
+    fn derivative(&self, a: f64) -> Place {
+        let powers = 1..=self.series.len();
+        let terms = powers.rev().zip(self.series.iter().rev());
+        Place::horner(a, terms.map(|(k, term)| (k as f64, term)))
+    }
+
+    fn sigma(&self, a: f64) -> f64 {
+        let terms = self.series.iter().rev().chain([&self.here]);
+        terms.fold(0.0, |sum, term| a * sum + term.sigma)
+    }
+
+    /// Shortly before the first a in sight where σ = 0.
+    fn before_the_end(&self, a: f64) -> f64 {
+        let (mut begin, mut end) = (0.0, a);
+        while self.sigma(begin) > LEFT * self.here.sigma && end - begin > f64::EPSILON * a {
+            let middle = 0.5 * (begin + end);
+            if self.sigma(middle) > 0.0 {
+                begin = middle;
+            } else {
+                end = middle;
+            }
+        }
+        begin
+    }
+}
+
+impl Place {
+    /// Σ aᵏ c_k x_k from factors and terms, the last first.
+    fn horner<'a>(a: f64, terms: impl Iterator<Item = (f64, &'a Place)>) -> Self {
+        let mut terms = terms.map(|(factor, term)| (factor, term.clone()));
+        let Some((factor, mut sum)) = terms.next() else {
+            return Self::default();
+        };
+        sum.scale(factor);
+        for (factor, term) in terms {
+            sum.scale(a);
+            sum.x.move_along(factor, &term.x);
+            sum.sigma += factor * term.sigma;
+        }
+        sum
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.x.scale(factor);
+        self.sigma *= factor;
+    }
+}
+
+/// ⟨x, y⟩ in units of the reference force and jump.
+fn product(problem: &ContactProblem<'_>, x: &Iterate, y: &Iterate) -> f64 {
+    let force = problem.reference_force();
+    let jump = force / problem.operator.rho;
+    dot(&x.P, &y.P) / (force * force)
+        + (dot(&x.v, &y.v) + dot(&x.lambda, &y.lambda)) / (jump * jump)
+}
