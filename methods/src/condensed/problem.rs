@@ -33,7 +33,7 @@ const STAGNATION: usize = 15;
 /// Iterations that most methods need at most: the history holds as many without asking for memory again.
 const EXPECTED: usize = 64;
 
-/// Iterations without progress after which a violation below the rounding of W P counts as that.
+/// Iterations without progress after which a violation below the rounding of W P counts as that, and one below the tolerance as solved.
 const AT_REST: usize = 5;
 
 /// A violation counts as progress below this fraction of the best before.
@@ -378,8 +378,15 @@ impl<'a> ContactProblem<'a> {
         self.note(violation, changes);
         let iteration = self.counters.iterations;
         // Where rounding is all that is left the judge says what that is worth.
-        let at_rest = self.idle() >= AT_REST && violation <= self.floor;
-        if violation <= self.stop {
+        let rests = self.idle() >= AT_REST;
+        let at_rest = rests && violation <= self.floor;
+        // What the judge would take is good enough where it gets no better.
+        let accepted = if rests {
+            self.increment.tolerance
+        } else {
+            self.stop
+        };
+        if violation <= accepted {
             Some(Status::Converged)
         } else if at_rest {
             Some(Status::Rounding)

@@ -84,20 +84,6 @@ impl FixedPoint {
         }
     }
 
-    /// As a part of a method that takes so many iterations at most.
-    pub fn within(max_iterations: usize, program: NewProgram, parameter: Parameter) -> Self {
-        let (anderson, polish) = (Settings::ANDERSON as usize, true);
-        Self {
-            settings: Settings {
-                max_iterations,
-                anderson,
-                polish,
-            },
-            program,
-            parameter,
-        }
-    }
-
     /// A few Newton steps.
     fn polished(
         &self,
@@ -111,6 +97,7 @@ impl FixedPoint {
             limits: Limits::new(self.settings.max_iterations, POLISH_PATIENCE),
             line_search: true,
             rescue: false,
+            regularise: true,
             tangent: Tangent::default(),
         };
         newton.run(problem, x, monitor)

@@ -58,11 +58,6 @@ pub static METHOD: Method = Method {
     build: |options| Box::new(FixedPoint::new(options, program, shift)),
 };
 
-/// The method as a part of another that takes so many iterations at most.
-pub(crate) fn within(max_iterations: usize) -> FixedPoint {
-    FixedPoint::within(max_iterations, program, shift)
-}
-
 fn program(problem: &ContactProblem<'_>) -> Result<Box<dyn Program>, MethodError> {
     Ok(Box::new(ConeProgram::new(problem)?))
 }

@@ -5,13 +5,13 @@
 //!
 //! ```text
 //! F(x) = (v − q − W P − Q β,  Qᵀ P − c,  P_n g,  (P_n, P_t/μ) ∘ (λ, d)),  x = (P, β, v, λ)      quadratic in x; F = 0: the laws
-//! F(x) = σ² F(x₀)                            a path from x₀ inside the cones, σ = 1, to a solution, σ = 0; it never leaves them
+//! F(x(a)) = σ(a)²/σ² F(x)                    a path from x inside the cones, where σ = 1, to a solution, σ = 0; it never leaves them
 //!
 //! x(a) = x + Σ aᵏ x_k,  σ(a) = σ + Σ aᵏ σ_k   by arc length a: ⟨x_1, x_1⟩ + σ_1² = 1,  ⟨x_k, x_1⟩ + σ_k σ_1 = 0
-//! F'(x) x_k − 2σ σ_k F(x₀) = Σ_{0<i<k} (σ_i σ_{k−i} F(x₀) − B(x_i, x_{k−i}))                 B: the quadratic part
+//! F'(x) x_k − 2σ_k/σ F(x) = Σ_{0<i<k} (σ_i σ_{k−i}/σ² F(x) − B(x_i, x_{k−i}))               B: the quadratic part
 //! a = (ε |x_1| / |x_N|)^(1/(N−1))            where the last term is ε of the first
 //! ```
-//! One LU a step for all N terms and for a Newton correction of the last step's rest. By arc length the path may turn back in σ, as
+//! One LU a step for all N terms. Every step follows the path through the iterate, so that there is nothing to correct. By arc length the path may turn back in σ, as
 //! it does where friction lets solutions vanish; a method that lowers σ stalls there. In σ², not σ, points that neither press nor open
 //! at the solution leave the path smooth. ⟨·,·⟩ is taken in units of the reference force and jump.
 //!
@@ -37,6 +37,7 @@ use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::options::options;
 use crate::contract::registry::{Method, Needs};
 use crate::contract::state::{Monitor, Status};
+use crate::newton::central_path::Products;
 use crate::newton::iteration::Newton;
 use crate::newton::path_equations::{Iterate, Lack, PathEquations};
 use crate::newton::pdas::Sets;
@@ -56,18 +57,22 @@ pub static METHOD: Method = Method {
 
 options! {
     IpmAnm {
-        order: Count(20, 2, 100), "terms of the series of a step";
-        accuracy: Real(1e-5, 1e-14, 0.1), "last term of a step, relative to the first";
+        order: Count(SERIES.0 as i64, 2, 100), "terms of the series of a step";
+        accuracy: Real(SERIES.1, 1e-14, 0.1), "last term of a step, relative to the first";
         max_iterations: Count(2000, 1, 1_000_000), "steps before giving up";
     }
 }
 
+/// Terms and accuracy by default.
+pub(crate) const SERIES: (usize, f64) = (20, 1e-5);
 /// σ below which Newton's method is tried from the path, and again each time that it has fallen to this part.
 const NEAR: f64 = 1e-2;
 const AGAIN: f64 = 0.1;
 /// Newton steps without progress after which the path is taken up again.
-const PATIENCE: usize = 5;
-/// A step that leaves the cones or σ > 0 is shortened by this factor.
+const PATIENCE: usize = 8;
+/// Distance from the path that a step may end at, relative to the products there.
+const NEIGHBOURHOOD: f64 = 0.3;
+/// A step that leaves this neighbourhood or σ > 0 is shortened by this factor.
 const SHORTER: f64 = 0.8;
 /// Most often that a step is shortened: then rounding has taken over.
 const MOST_CUTS: usize = 100;
@@ -83,14 +88,14 @@ impl CondensedMethod for IpmAnm {
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, usize::MAX / 2);
-        along_series(problem, *self, limits, monitor)
+        along_series(problem, (self.order, self.accuracy), limits, monitor)
     }
 }
 
 /// The loop, from the start of the increment until it ends.
 pub(crate) fn along_series(
     problem: &mut ContactProblem<'_>,
-    settings: IpmAnm,
+    (order, accuracy): (usize, f64),
     limits: Limits,
     monitor: &mut dyn Monitor,
 ) -> Ended {
@@ -108,10 +113,10 @@ pub(crate) fn along_series(
             Check::End(status) => break status,
         }
         problem.counters.factorisations += 1;
-        if !path.expand(problem, settings.order) {
+        if !path.expand(problem, order) {
             break problem.singular();
         }
-        if !path.advance(problem, settings.accuracy) {
+        if !path.advance(problem, accuracy) {
             break Status::Stalled;
         }
         path.here.x.forces(problem, &mut at);
@@ -140,6 +145,7 @@ fn cross_over(
         limits: Limits::new(most, PATIENCE),
         line_search: true,
         rescue: false,
+        regularise: true,
         tangent: Tangent::default(),
     };
     let end = newton.run(problem, at.clone(), monitor);
@@ -157,76 +163,60 @@ struct Place {
 /// Where the path stands, and its series there.
 struct Path {
     here: Place,
-    /// −F(x₀).
-    first: Lack,
+    /// −F(x) here.
+    lack: Lack,
     /// Terms from x_1 on.
     series: Vec<Place>,
     /// Its direction at the end of the last step.
     tangent: Option<Place>,
-    /// Newton's correction at fixed σ.
-    correction: Iterate,
     equations: PathEquations,
-    lack: Lack,
 }
 
 impl Path {
     /// From inside the cones, where σ = 1.
     fn from(problem: &ContactProblem<'_>, start: &Forces, jump: &[f64]) -> Self {
-        let (mut x, mut first) = (Iterate::default(), Lack::default());
+        let mut x = Iterate::default();
         x.begin(problem, start, jump, 1.0);
-        first.read(problem, &x);
         Self {
             here: Place { x, sigma: 1.0 },
-            first,
+            lack: Lack::default(),
             series: Vec::new(),
             tangent: None,
-            correction: Iterate::default(),
             equations: PathEquations::default(),
-            lack: Lack::default(),
         }
     }
 
-    /// The series at this place, and the correction; false if the matrix is singular.
+    /// The series at this place; false if the matrix is singular.
     fn expand(&mut self, problem: &ContactProblem<'_>, order: usize) -> bool {
-        let Self {
-            here,
-            first,
-            equations,
-            lack,
-            ..
-        } = self;
-        let (x, sigma) = (&here.x, here.sigma);
-        if !equations.factor(problem, x) {
+        let Place { x, sigma } = &self.here;
+        self.lack.read(problem, x);
+        if !self.equations.factor(problem, x) {
             return false;
         }
-        lack.read(problem, x);
-        lack.add(-sigma * sigma, first);
-        let mut regular = equations.direction(problem, x, lack, &mut self.correction);
-        // x_k = σ_k y + z_k with F' y = 2σ F(x₀).
-        let mut y = Iterate::default();
-        lack.clone_from(first);
-        lack.scale(-2.0 * sigma);
-        regular &= equations.direction(problem, x, lack, &mut y);
+        // x_k = σ_k y + z_k,  F' y = 2/σ F(x).
+        let (mut y, mut right) = (Iterate::default(), self.lack.times(-2.0 / sigma));
+        let mut regular = self.equations.direction(problem, x, &right, &mut y);
         let square = 1.0 + product(problem, &y, &y);
         let ahead = (self.tangent.as_ref()).map_or(-1.0, |t| product(problem, &y, &t.x) + t.sigma);
-        let sigma = square.sqrt().recip().copysign(ahead);
+        let mut first = Place {
+            x: y.clone(),
+            sigma: 1.0,
+        };
+        first.scale(square.sqrt().recip().copysign(ahead));
         self.series.clear();
-        let mut x_1 = y.clone();
-        x_1.scale(sigma);
-        self.series.push(Place { x: x_1, sigma });
+        self.series.push(first);
         for _ in 2..=order {
             let pairs = || self.series.iter().zip(self.series.iter().rev());
             let squares: f64 = pairs().map(|(a, b)| a.sigma * b.sigma).sum();
-            lack.clone_from(first);
-            lack.scale(-squares);
+            right = self.lack.times(-squares / (sigma * sigma));
             for (a, b) in pairs() {
-                for (i, own) in lack.products.iter_mut().enumerate() {
+                for (i, own) in right.products.iter_mut().enumerate() {
                     let pair = a.x.at(problem, i).products_with(&b.x.at(problem, i));
                     *own = own.plus(-1.0, &pair);
                 }
             }
             let mut term = Place::default();
-            regular &= equations.direction(problem, x, lack, &mut term.x);
+            regular &= (self.equations).direction(problem, x, &right, &mut term.x);
             term.sigma = -product(problem, &term.x, &y) / square;
             term.x.move_along(term.sigma, &y);
             self.series.push(term);
@@ -249,19 +239,28 @@ impl Path {
                 a = self.before_the_end(a);
             }
             let next = self.at(a);
-            if next.x.is_inside(problem) {
+            if self.is_near(problem, &next) {
                 self.tangent = Some(self.derivative(a));
                 self.here = next;
-                let mut corrected = self.here.x.clone();
-                corrected.move_along(1.0, &self.correction);
-                if corrected.is_inside(problem) {
-                    self.here.x = corrected;
-                }
                 return true;
             }
             a *= SHORTER;
         }
         false
+    }
+
+    /// Whether a place is inside the cones, its products within [`NEIGHBOURHOOD`] of those on the path.
+    fn is_near(&self, problem: &ContactProblem<'_>, place: &Place) -> bool {
+        let part = (place.sigma / self.here.sigma).powi(2);
+        let is_near = |(i, lack): (usize, &Products)| {
+            let point = place.x.at(problem, i);
+            let off = point.products().plus(part, lack);
+            let [a, b] = off.vector;
+            point.is_inside()
+                && off.normal.abs() <= -NEIGHBOURHOOD * part * lack.normal
+                && off.scalar.hypot(a).hypot(b) <= -NEIGHBOURHOOD * part * lack.scalar
+        };
+        self.lack.products.iter().enumerate().all(is_near)
     }
 
     /// x(a), σ(a).

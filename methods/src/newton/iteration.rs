@@ -51,6 +51,8 @@ pub(crate) struct Newton<S> {
     pub line_search: bool,
     /// Move on by a few local and global stages where stuck.
     pub rescue: bool,
+    /// Go on where redundant points make the tangent singular.
+    pub regularise: bool,
     pub tangent: Tangent,
 }
 
@@ -90,6 +92,7 @@ impl<S: Scheme> Newton<S> {
             limits: Limits::new(options.count(max_iterations), PATIENCE),
             line_search: true,
             rescue: true,
+            regularise: true,
             tangent: Tangent::new(options.switch(&MONOLITHIC)),
         }
     }
@@ -162,8 +165,8 @@ impl<S: Scheme> Newton<S> {
                 (at.x, at.merit) = (pair.into(), None);
                 continue;
             }
-            let singular = stop == Stop::SingularTangent;
-            if !(singular && self.find_direction(problem, &mut at, true)?) {
+            let loose = stop == Stop::SingularTangent && problem.modes() > 0;
+            if !(loose && self.find_direction(problem, &mut at, true)?) {
                 return Ok(End { status, at: at.x });
             }
             self.advance(problem, &mut at)?;
@@ -184,7 +187,7 @@ impl<S: Scheme> Newton<S> {
         at: &mut State<S::Piece>,
         hold: bool,
     ) -> Result<bool, MethodError> {
-        at.work.hold = hold;
+        (at.work.hold, at.work.regularise) = (hold, self.regularise);
         // A direction before may have asked for others.
         at.pieces.clone_from(&at.before);
         let mut of_step = At {

@@ -75,11 +75,6 @@ impl Iterate {
         parts.into_iter().flatten().for_each(|x| *x *= t);
     }
 
-    /// Whether it is inside all cones.
-    pub fn is_inside(&self, problem: &ContactProblem<'_>) -> bool {
-        (0..problem.rows.points()).all(|i| self.at(problem, i).is_inside())
-    }
-
     /// min(1, `fraction` · longest step inside all cones).
     pub fn step_length(&self, problem: &ContactProblem<'_>, step: &Iterate, fraction: f64) -> f64 {
         let points = 0..problem.rows.points();
@@ -119,18 +114,17 @@ impl Lack {
         refill(&mut self.products, points.map(lacking));
     }
 
-    /// self := t self.
-    pub fn scale(&mut self, t: f64) {
-        (self.v.iter_mut().chain(&mut self.balance)).for_each(|x| *x *= t);
-        (self.products.iter_mut()).for_each(|own| *own = Products::default().plus(t, own));
-    }
-
-    /// self := self + t other.
-    pub fn add(&mut self, t: f64, other: &Lack) {
-        add(t, &other.v, &mut self.v);
-        add(t, &other.balance, &mut self.balance);
-        let pairs = self.products.iter_mut().zip(&other.products);
-        pairs.for_each(|(own, other)| *own = own.plus(t, other));
+    /// t self.
+    pub fn times(&self, t: f64) -> Self {
+        let times = |x: &Vec<f64>| x.iter().map(|x| t * x).collect();
+        let products = self.products.iter();
+        Self {
+            products: products
+                .map(|own| Products::default().plus(t, own))
+                .collect(),
+            v: times(&self.v),
+            balance: times(&self.balance),
+        }
     }
 }
 

@@ -58,6 +58,8 @@ pub(crate) trait Scheme: Send {
 pub(crate) struct Work {
     /// Loose pieces are held by springs.
     pub hold: bool,
+    /// Whether a singular tangent is regularised.
+    pub regularise: bool,
     rows: Vec<[PointRow; 3]>,
     /// An iterate that is tried, and its jump.
     pub trial: Forces,
@@ -81,7 +83,7 @@ impl At<'_, '_> {
         ContactPoint::of(self.problem, i, self.r, (&self.x.p, self.v))
     }
 
-    /// The step of the given pieces, regularised if their tangent is singular.
+    /// The step of the given pieces, regularised if their tangent is singular and that is wanted.
     pub fn step<S: Scheme + ?Sized>(
         &mut self,
         scheme: &S,
@@ -91,6 +93,9 @@ impl At<'_, '_> {
         self.linearise(scheme, pieces);
         if self.solve(step)? {
             return Ok(true);
+        }
+        if !self.work.regularise {
+            return Ok(false);
         }
         self.linearise(scheme, pieces);
         let ridge = RIDGE / self.problem.operator.rho;

@@ -199,7 +199,7 @@ pub fn method(name: &str) -> Option<&'static Method> {
 
 /// Methods known to solve every toy. One that is not listed may give up: a fair failure is a result, and only a wrong claim,
 /// a crash, a wrong size or different bits from the same input fail a test.
-const SOLVES_EVERY_TOY: [&str; 17] = [
+const SOLVES_EVERY_TOY: [&str; 18] = [
     "b-newton",
     "newton-ac",
     "pdas",
@@ -207,6 +207,7 @@ const SOLVES_EVERY_TOY: [&str; 17] = [
     "ncp-newton",
     "hybrid",
     "interior-point",
+    "ipm-anm",
     "augmented-lagrangian",
     "latin",
     "admm",
