@@ -33,7 +33,7 @@ const STAGNATION: usize = 15;
 /// Iterations that most methods need at most: the history holds as many without asking for memory again.
 const EXPECTED: usize = 64;
 
-/// Iterations without progress after which a violation below the rounding of W P counts as that, and one below the tolerance as solved.
+/// Iterations without progress after which a violation below the rounding of W P counts as that.
 const AT_REST: usize = 5;
 
 /// A violation counts as progress below this fraction of the best before.
@@ -107,6 +107,8 @@ pub struct ContactProblem<'a> {
     /// Rounding of W P in the violation measured last; 0 as long as that falls.
     floor: f64,
     rescues: usize,
+    /// Whether an iterate short of `stop` was taken for good enough.
+    late: bool,
     /// Smallest violation so far and its iteration.
     pub(super) best: (f64, usize),
     pub(super) corrections: usize,
@@ -177,6 +179,7 @@ impl<'a> ContactProblem<'a> {
             increment,
             rows: system.row_set(),
             rescues: 0,
+            late: false,
             best: (f64::INFINITY, 0),
             counters,
             free: u,
@@ -295,7 +298,7 @@ impl<'a> ContactProblem<'a> {
 
     /// Forgets what progress was: another algorithm takes over.
     pub(crate) fn begin_phase(&mut self) {
-        self.best = (f64::INFINITY, self.counters.iterations);
+        (self.best, self.late) = ((f64::INFINITY, self.counters.iterations), false);
     }
 
     /// The same, and forgets where iterates were measured from and how often they were rescued: the algorithm starts where the
@@ -378,15 +381,13 @@ impl<'a> ContactProblem<'a> {
         self.note(violation, changes);
         let iteration = self.counters.iterations;
         // Where rounding is all that is left the judge says what that is worth.
-        let rests = self.idle() >= AT_REST;
-        let at_rest = rests && violation <= self.floor;
-        // What the judge would take is good enough where it gets no better.
-        let accepted = if rests {
-            self.increment.tolerance
-        } else {
-            self.stop
-        };
-        if violation <= accepted {
+        let at_rest = self.idle() >= AT_REST && violation <= self.floor;
+        // What the judge would take is good enough where little patience is left for more.
+        let late = !self.late
+            && self.idle() >= limits.patience / 2
+            && violation <= self.increment.tolerance;
+        self.late |= late;
+        if violation <= self.stop || late {
             Some(Status::Converged)
         } else if at_rest {
             Some(Status::Rounding)

@@ -80,6 +80,11 @@ impl ContactProblem<'_> {
             self.confirmed = Some(state);
             return Ok(Check::End(status));
         }
+        if self.last_violation() > self.stop {
+            // It was taken late, for less than methods stop at.
+            self.counters.iterations += 1;
+            return Ok(Check::GoOn);
+        }
         if self.corrections == MAX_CORRECTIONS {
             return Ok(Check::End(Status::Stalled));
         }
