@@ -143,16 +143,16 @@ pub fn told(value: &str, file: Option<&str>) -> String {
     }))
 }
 
-/// A limit on programs from outside.
+/// A limit on methods.
 #[derive(Debug, clap::Args)]
-pub struct ProgramLimit {
-    /// Time limit for an increment of a program from outside (exec:PROGRAM), in s
+pub struct TimeLimit {
+    /// Time limit for an increment by a method, in s
     #[arg(long, default_value_t = SECONDS, value_parser = positive)]
     time_limit: f64,
 }
 
-impl ProgramLimit {
-    /// A method as on the command line, limited if it is a program.
+impl TimeLimit {
+    /// A method as on the command line, limited.
     pub fn parse(&self, argument: &str) -> Result<Choice, ChoiceError> {
         Ok(Choice::parse(argument)?.limited(self.time_limit, None))
     }
@@ -167,7 +167,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// The methods named, or all of them with their defaults.
-pub fn methods_or_all(named: &[String], limit: &ProgramLimit) -> Result<Vec<Choice>, CliError> {
+pub fn methods_or_all(named: &[String], limit: &TimeLimit) -> Result<Vec<Choice>, CliError> {
     if named.is_empty() {
         return Ok(Choice::all()?);
     }

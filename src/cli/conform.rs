@@ -2,7 +2,7 @@
 
 use stickslip_methods::Tier;
 
-use super::arguments::{ProgramLimit, methods_or_all};
+use super::arguments::{TimeLimit, methods_or_all};
 use super::error::CliError;
 use super::output::{say, show};
 use super::progress::Bar;
@@ -20,7 +20,7 @@ pub struct Arguments {
     #[arg(long, default_value = "high")]
     tier: Tier,
     #[command(flatten)]
-    limit: ProgramLimit,
+    limit: TimeLimit,
 }
 
 /// Runs the exercises; false if one failed, or a method solved none.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::advice;
-use super::arguments::{Output, ProgramLimit, find_cases, only, provenance_with, refuse_twins};
+use super::arguments::{Output, TimeLimit, find_cases, only, provenance_with, refuse_twins};
 use super::error::CliError;
 use super::output::{conclude, show};
 use super::progress::Bar;
@@ -48,7 +48,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
     #[command(flatten)]
-    limit: ProgramLimit,
+    limit: TimeLimit,
 }
 
 /// Values of `--fields`.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use stickslip_methods::Tier;
 
 use super::arguments::{
-    Output, ProgramLimit, methods_or_all, only, provenance_with, refuse_twins, told,
+    Output, TimeLimit, methods_or_all, only, provenance_with, refuse_twins, told,
 };
 use super::error::CliError;
 use super::output::{conclude, show};
@@ -53,7 +53,7 @@ pub struct Arguments {
     #[command(flatten)]
     output: Output,
     #[command(flatten)]
-    limit: ProgramLimit,
+    limit: TimeLimit,
 }
 
 /// Runs the verb; false if a problem was not solved.

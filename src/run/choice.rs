@@ -7,13 +7,15 @@ use stickslip_methods::{Enforcement, Method, OptionError, OptionSpec, OptionValu
 
 use crate::case::reader::suggestion;
 use crate::case::{Case, CaseError, MethodSpec};
-use crate::run::outside::{OUTSIDE, Outside, Program};
+use crate::run::outside::{OUTSIDE, Outside, Program, SECONDS};
 use crate::run::registry::{method, methods};
 
 /// A method with its options.
 #[derive(Debug, Clone)]
 pub struct Choice {
     source: Source,
+    /// Time for an increment [s].
+    pub seconds: f64,
     /// Name in tables: registry name, changed options in brackets; of a program `exec:` and the name of its file.
     pub label: String,
 }
@@ -36,7 +38,11 @@ impl Choice {
             list => format!("{}[{list}]", method.name),
         };
         let source = Source::Registry(method, options);
-        Ok(Choice { source, label })
+        Ok(Choice {
+            source,
+            label,
+            seconds: SECONDS,
+        })
     }
 
     /// A method as on the command line: `name`, `name:option=value,option=value`, or `exec:PROGRAM`.
@@ -77,6 +83,7 @@ impl Choice {
         Ok(Choice {
             label: format!("{OUTSIDE}{}", program.name()),
             source: Source::Outside(program),
+            seconds: SECONDS,
         })
     }
 
@@ -129,14 +136,16 @@ impl Choice {
         }
     }
 
-    /// The same, where it is a program with so many seconds for an increment and an end to all of them.
+    /// The same with so many seconds for an increment; a program, which cannot be trusted to give up, with an end to all of them.
     pub fn limited(self, seconds: f64, until: Option<Instant>) -> Self {
-        match self.source {
-            Source::Registry(..) => self,
-            Source::Outside(program) => Self {
-                source: Source::Outside(program.limited(seconds, until)),
-                ..self
-            },
+        let source = match self.source {
+            Source::Outside(program) => Source::Outside(program.limited(seconds, until)),
+            registered => registered,
+        };
+        Self {
+            source,
+            seconds,
+            ..self
         }
     }
 

@@ -4,8 +4,8 @@
 use std::time::Instant;
 
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, Silent,
-    Status, Tier, conic::no_equilibrium, consistency, guess, point_status, residuals_of,
+    ContactState, ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, Status,
+    Tier, conic::no_equilibrium, consistency, guess, point_status, residuals_of,
 };
 
 use crate::model::loading::Loading;
@@ -163,6 +163,8 @@ fn with_mechanics(
 pub struct Solver<'a> {
     system: &'a ContactSystem,
     method: Box<dyn Enforcement>,
+    /// Time for an increment [s].
+    seconds: f64,
     /// Time the preparation took, until an increment counted it [s].
     pub prepare_s: f64,
 }
@@ -182,15 +184,23 @@ impl<'a> Solver<'a> {
         Ok(Self {
             system,
             method,
+            seconds: choice.seconds,
             prepare_s: prepare.total_s,
         })
     }
 
     /// Solves an increment, unjudged: what the method returned and its seconds.
     pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, Seconds) {
-        let solve = || self.method.solve(increment, &mut Silent);
+        // What every method and the judge begin with is no method's time; if it fails, so will they.
+        let _ = self.system.elastic().free(&increment.load.force);
+        let mut deadline = Deadline(Instant::now(), self.seconds);
+        let solve = || self.method.solve(increment, &mut deadline);
         let (outcome, mut seconds) = timed(self.system, solve);
         seconds.reported_s = self.method.reported_s();
+        let outcome = outcome.and_then(|found| match found.status {
+            Status::Stopped => Err(MethodError::TimeLimit),
+            _ => Ok(found),
+        });
         (outcome, seconds)
     }
 
@@ -246,6 +256,15 @@ impl<'a> Solver<'a> {
             judged,
             jump,
         }
+    }
+}
+
+/// Stops a method that takes more than so many seconds.
+struct Deadline(Instant, f64);
+
+impl Monitor for Deadline {
+    fn step(&mut self, _iteration: usize, _violation: f64) -> bool {
+        self.0.elapsed().as_secs_f64() < self.1
     }
 }
 

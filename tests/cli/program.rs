@@ -267,6 +267,15 @@ fn chosen_increments_have_pictures_of_their_own() {
     assert!(told.contains("known: 1 to 16"), "{told}");
 }
 
+/// A time that no iteration keeps: a verdict of the run, of a method of the house as of a program.
+#[test]
+fn a_method_out_of_time_is_a_verdict_and_ends_with_1() {
+    let dir = folder(0.0);
+    let arguments = ["run", "small.toml", "-m", METHOD, "--time-limit", "1e-9"];
+    let (shown, _) = ends_with(1, &arguments, dir.path());
+    assert!(shown.contains("timed-out"), "{shown}");
+}
+
 #[test]
 fn a_missed_expectation_ends_with_1_and_is_named() {
     let dir = folder(3.0);

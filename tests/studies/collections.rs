@@ -180,7 +180,7 @@ fn hybrid_comes_to_the_interior_point_method_early_where_points_are_redundant() 
     let runs = rows(&dir.path().join("results/runs.csv"));
     let iterations: usize = runs[0]["iterations"].parse().unwrap();
     assert!(
-        runs[0]["verdict"] == "solved" && iterations < 120,
+        runs[0]["verdict"] == "solved" && iterations < 40,
         "{iterations}"
     );
     let problem = &rows(&dir.path().join("results/problems.csv"))[0];

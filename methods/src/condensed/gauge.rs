@@ -26,8 +26,7 @@ impl<'a> Gauge<'a> {
     pub fn new(increment: &'a Increment<'a>) -> Result<Self, MethodError> {
         increment.check()?;
         let elastic = increment.system.elastic();
-        let mut u = increment.load.force.clone();
-        elastic.on_body(|| elastic.solve(&mut u))??;
+        let u = elastic.on_body(|| elastic.free(&increment.load.force))??;
         let operator = increment.system.operator(DelassusForm::Formed)?;
         Ok(Self {
             free: FreeJump::new(increment, &operator, &increment.jump(&u))?,

@@ -36,8 +36,7 @@ impl Increment<'_> {
         let elastic = self.system.elastic();
         let formed = elastic.formed()?;
         elastic.on_body(|| {
-            let mut u = self.load.force.clone();
-            elastic.solve(&mut u)?;
+            let u = elastic.free(&self.load.force)?;
             let (rows, modes) = (elastic.rows(), self.form_modes());
             let all = self.load.offset.len();
             let q = slip_from(&rows, self.system.dim(), &self.jump(&u), &self.start_jump());

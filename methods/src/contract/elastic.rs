@@ -8,6 +8,7 @@ use crate::algebra::condensation::Tractions;
 use crate::algebra::delassus::Delassus;
 use crate::algebra::factor::Elimination;
 use crate::algebra::floating::ModeJumps;
+use crate::algebra::loads::Loads;
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::rank;
@@ -86,6 +87,7 @@ pub struct Elastic {
     delassus: Shared<(Arc<dyn Delassus>, f64)>,
     condensed: Shared<Arc<ContactOperator>>,
     tractions: Shared<(Arc<Tractions>, f64)>,
+    loads: Loads,
     solves: AtomicUsize,
     on_body_ns: AtomicU64,
     products: AtomicUsize,
@@ -201,6 +203,7 @@ impl Elastic {
             delassus: OnceLock::new(),
             condensed: OnceLock::new(),
             tractions: OnceLock::new(),
+            loads: Loads::default(),
             solves: AtomicUsize::new(0),
             on_body_ns: AtomicU64::new(0),
             products: AtomicUsize::new(0),
@@ -305,6 +308,15 @@ impl Elastic {
         self.stiffness.solve(x)?;
         self.solves.fetch_add(1, Relaxed);
         Ok(())
+    }
+
+    /// Displacements of a load without contact forces, as [`solve`](Self::solve) gives them: once a load, however many methods and
+    /// judges ask; the last loads are kept.
+    ///
+    /// # Errors
+    /// Those of [`solve`](Self::solve).
+    pub fn free(&self, force: &[f64]) -> Result<Arc<Vec<f64>>, MethodError> {
+        self.loads.solved(force, |u| self.solve(u))
     }
 
     /// Counts the time of a call as that of work on all unknowns of the body, once K is factored.

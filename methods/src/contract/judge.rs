@@ -104,8 +104,7 @@ pub fn residuals_of(
     // W is not formed to judge: one solve, and the trace in ρ.
     let operator = system.operator(DelassusForm::Products)?;
     let (rho, rows) = (operator.sharp, system.row_set());
-    let mut free = i.load.force.clone();
-    system.elastic().solve(&mut free)?;
+    let free = system.elastic().free(&i.load.force)?;
     let FreeJump {
         start_jump, scale, ..
     } = FreeJump::new(i, &operator, &i.jump(&free))?;
