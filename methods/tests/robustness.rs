@@ -99,3 +99,14 @@ fn failures_and_median_iterations_on_random_strongly_coupled_systems() {
     }
     assert_eq!(unsolved, 0, "at μ = 0.1 every exact method solves all");
 }
+
+/// Goal: where friction is so large that solutions vanish along the way, a path that is followed by arc length goes round.
+#[test]
+fn a_path_followed_by_arc_length_ends_at_a_solution_where_others_stall() {
+    let failures = |name: &str| -> usize {
+        let of = |dim| tally(method(name).unwrap(), &[], &systems(dim), 5.0).1;
+        of(2) + of(3)
+    };
+    assert_eq!([failures("ipm-anm"), failures("hybrid")], [0, 0]);
+    assert!(failures("interior-point") > 5);
+}
