@@ -16,7 +16,7 @@ fn discretisation(criterion: &mut Criterion) {
     for problem in &PROBLEMS {
         let case = problem.case();
         let body = || {
-            Body::new(&case, problem.refine, Needs::default())
+            Body::new(&case, problem.refine, &Needs::default())
                 .expect("shipped cases can be discretised")
         };
         let factorise = |body: &mut Body| body.elastic.factorise().expect("K is regular");

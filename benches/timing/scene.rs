@@ -29,11 +29,11 @@ impl Scene {
     pub fn new(problem: &Problem) -> Self {
         let case = problem.case();
         let needs = Needs {
-            frictionless: false,
+            frictionless: Vec::new(),
             traction: true,
         };
         let body =
-            Body::new(&case, problem.refine, needs).expect("shipped cases can be discretised");
+            Body::new(&case, problem.refine, &needs).expect("shipped cases can be discretised");
         let friction = vec![problem.friction; body.points.len()];
         let system =
             || ContactSystem::new(Arc::clone(&body.elastic), friction.clone()).expect("valid");

@@ -37,7 +37,7 @@
 //!     order: vec![0, 1],
 //!     free_order: Vec::new(),
 //!     floating: vec![],
-//!     frictionless: false,
+//!     frictionless: vec![],
 //!     traction: None,
 //! })?;
 //! let system = ContactSystem::new(elastic, vec![0.5])?;

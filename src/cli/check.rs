@@ -39,7 +39,7 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
         choices(&case, &[])?;
         expect::check(&case)?;
         for &refine in &case.sweep.refine {
-            let body = Body::new(&case, refine, Needs::default()).map_err(RunError::from)?;
+            let body = Body::new(&case, refine, &Needs::default()).map_err(RunError::from)?;
             let mut lines = vec![format!(
                 "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}, at least {:.2} GB{}",
                 file.display(),

@@ -65,10 +65,10 @@ pub struct Setup {
 }
 
 /// Demands of the runs on a body: it pays for nothing else.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Needs {
-    /// No run has friction: only normal rows are ever condensed.
-    pub frictionless: bool,
+    /// Cracks on which no run has friction: only their normal rows are ever condensed. Empty: none.
+    pub frictionless: Vec<bool>,
     /// A method needs the traction operator.
     pub traction: bool,
 }
@@ -78,7 +78,7 @@ impl Body {
     ///
     /// # Errors
     /// Fault of the case that only the discretisation finds, at its place in the file.
-    pub fn new(case: &Case, refine: usize, needs: Needs) -> Result<Self, BodyError> {
+    pub fn new(case: &Case, refine: usize, needs: &Needs) -> Result<Self, BodyError> {
         let grid = case.mesh.grid.refined(refine);
         memory::check(case, &grid)?;
         check_pairs(case)?;
@@ -151,7 +151,7 @@ impl Body {
 fn system(
     discrete: &Discretisation,
     reduced: Reduced,
-    needs: Needs,
+    needs: &Needs,
     traction: &[Vec<(usize, f64)>],
     setup: &mut Setup,
 ) -> Result<Arc<Elastic>, MethodError> {
@@ -160,7 +160,9 @@ fn system(
     let (col_ptr, row_idx, values) = reduced.stiffness;
     let free = col_ptr.len() - 1;
     let jump = free_rows(discrete, free, &discrete.jump_rows)?;
-    let last = in_contact(&jump, dim, needs.frictionless);
+    let of_point = |crack: usize| needs.frictionless.get(crack) == Some(&true);
+    let frictionless: Vec<bool> = (discrete.points.iter().map(|p| of_point(p.crack))).collect();
+    let last = in_contact(&jump, dim, &frictionless);
     let order = discrete.elimination_order(&last);
     let free_order = discrete.elimination_order(&vec![false; free]);
     setup.setup_s += clock.elapsed().as_secs_f64();
@@ -173,7 +175,7 @@ fn system(
         order,
         free_order,
         floating: reduced.motions,
-        frictionless: needs.frictionless,
+        frictionless,
         traction: traction.transpose()?,
     })
 }

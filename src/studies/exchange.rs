@@ -154,7 +154,7 @@ pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
         free_order: Vec::new(),
         stiffness,
         floating: Vec::new(),
-        frictionless: false,
+        frictionless: Vec::new(),
         traction: None,
     })?;
     Ok(System {

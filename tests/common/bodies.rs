@@ -18,7 +18,7 @@ pub fn bodies(needs: Needs) -> Vec<(&'static str, Body)> {
 pub fn bodies_like(needs: Needs, change: impl Fn(&str) -> String) -> Vec<(&'static str, Body)> {
     let body = |text: &str| {
         let text = change(text);
-        Body::new(&parse(&text), 1, needs).unwrap_or_else(|e| panic!("{e}\n{text}"))
+        Body::new(&parse(&text), 1, &needs).unwrap_or_else(|e| panic!("{e}\n{text}"))
     };
     let flat = |cracks: String| {
         let rest = cracks + &clamped(2);

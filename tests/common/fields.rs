@@ -195,7 +195,7 @@ pub fn hold(body: &mut Body, field: &dyn Field) {
 /// Solves a case whose prescribed displacements are those of a field.
 pub fn solve_held(text: &str, field: &dyn Field) -> (Body, Snapshot) {
     let case = parse(text);
-    let mut body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let mut body = Body::new(&case, 1, &Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
     hold(&mut body, field);
     let system =
         Arc::new(ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap());

@@ -42,7 +42,7 @@ pub fn body(text: &str) -> Body {
 
 /// A body, or why not.
 pub fn try_body(text: &str) -> Result<Body, BodyError> {
-    Body::new(&parse(text), 1, Needs::default())
+    Body::new(&parse(text), 1, &Needs::default())
 }
 
 /// One increment solved by hand.
@@ -144,7 +144,7 @@ pub fn solve_with(text: &str, name: &str, tolerance: f64) -> Solved {
 /// Solves the last load of a case, refined by a factor, in one increment; the method must converge to the tolerance.
 pub fn solve_case(case: &Case, refine: usize, name: &str, tolerance: f64) -> Solved {
     let text = &case.source;
-    let body = Body::new(case, refine, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let body = Body::new(case, refine, &Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
     let friction = friction(case, &body);
     let system = Arc::new(ContactSystem::new(body.elastic.clone(), friction).unwrap());
     let registered = method(name).expect("registered");

@@ -242,7 +242,7 @@ fn the_bits_do_not_depend_on_the_number_of_threads() {
                 .build()
                 .unwrap();
             pool.install(|| {
-                let body = Body::new(case, 1, Needs::default()).unwrap();
+                let body = Body::new(case, 1, &Needs::default()).unwrap();
                 let k = body.elastic.stiffness().unwrap().values();
                 let k: Vec<u64> = k.iter().map(|v| v.to_bits()).collect();
                 (k, bits(&run(case, methods)))

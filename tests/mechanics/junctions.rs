@@ -17,7 +17,7 @@ fn bodies() -> Vec<(&'static str, Body, usize)> {
     let plate = |cells: [usize; 2], cracks: String| {
         let rest = cracks + &support("\"bottom\"", "[0, 0]") + &support("\"top\"", "[0, -1e-3]");
         let case = parse(&plane([-1.0, -1.0], [1.0, 1.0], cells, &rest));
-        Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}"))
+        Body::new(&case, 1, &Needs::default()).unwrap_or_else(|e| panic!("{e}"))
     };
     let through = "\"none\"";
     let level = bent("[[-1.1, -0.13], [1.1, 0.21]]", through);

@@ -24,7 +24,7 @@ impl Path {
             traction: true,
             ..Needs::default()
         };
-        let body = Body::new(&case, 1, needs).unwrap();
+        let body = Body::new(&case, 1, &needs).unwrap();
         let friction = friction(&case, &body);
         let system = ContactSystem::new(body.elastic.clone(), friction).unwrap();
         Path {
@@ -59,7 +59,7 @@ impl Path {
 #[test]
 fn mechanics_that_are_not_finite_are_no_answer() {
     let case = shipped::find("plate_mesh1").unwrap().unwrap();
-    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let body = Body::new(&case, 1, &Needs::default()).unwrap();
     let good = Snapshot::virgin(&body);
     assert_eq!(good.not_finite(), None);
     type Spoil = fn(&mut Snapshot, f64);

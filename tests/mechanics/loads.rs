@@ -292,7 +292,7 @@ fn a_held_body_carries_its_initial_stress_across_the_crack() {
 /// A case and its body.
 fn bodies(text: &str) -> (Case, Body) {
     let case = parse(text);
-    let body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let body = Body::new(&case, 1, &Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
     (case, body)
 }
 

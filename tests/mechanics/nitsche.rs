@@ -17,7 +17,7 @@ use stickslip_methods::{
 const SETTINGS: Settings = Settings::PLAIN;
 
 const TRACTION: Needs = Needs {
-    frictionless: false,
+    frictionless: Vec::new(),
     traction: true,
 };
 
@@ -194,7 +194,7 @@ fn the_beam_agrees_with_the_multipliers() {
 #[test]
 fn the_stabilisation_vanishes_like_one_over_gamma() {
     let case = shipped("plate_mesh1");
-    let body = Body::new(&case, 1, TRACTION).unwrap();
+    let body = Body::new(&case, 1, &TRACTION).unwrap();
     let system = ContactSystem::new(body.elastic.clone(), vec![0.8; body.points.len()]).unwrap();
     let load = loading(&body, &case).at(case.path.increments);
     let exact = solve_body(&body, &system, &load, 1e-12, (METHOD, &[]))
@@ -222,7 +222,7 @@ fn the_stabilisation_vanishes_like_one_over_gamma() {
 fn oscillations_of_edge_pairs_off_the_grid_are_damped() {
     let case = shipped("sliding_block_off_grid");
     for refine in [1, 2, 4] {
-        let body = Body::new(&case, refine, TRACTION).unwrap();
+        let body = Body::new(&case, refine, &TRACTION).unwrap();
         let system =
             ContactSystem::new(body.elastic.clone(), vec![0.5; body.points.len()]).unwrap();
         let load = loading(&body, &case).at(case.path.increments);
@@ -270,7 +270,7 @@ fn gamma_is_measured_by_the_constant_of_the_trace_inequality() {
     let mut random = Random(31);
     for (q, tip) in [([1.1, 0.61], "none"), ([0.63, 0.45], "branch")] {
         let case = parse(&pushed([-0.1, 0.32], q, tip));
-        let body = Body::new(&case, 1, TRACTION).unwrap();
+        let body = Body::new(&case, 1, &TRACTION).unwrap();
         let lambda = trace_constant(&body, &case);
         let (s, k) = (
             body.elastic.traction().unwrap(),
@@ -317,7 +317,7 @@ fn slivers_do_not_drive_gamma() {
         let lambda = |p: [f64; 2], q: [f64; 2]| {
             let stress = format!("poisson = 0.3{stress}");
             let case = parse(&pushed(p, q, "none").replace("poisson = 0.3", &stress));
-            let body = Body::new(&case, 1, TRACTION).unwrap();
+            let body = Body::new(&case, 1, &TRACTION).unwrap();
             trace_constant(&body, &case)
         };
         let row = |e: f64| lambda([-0.1, 0.4 + 0.2 * e], [1.1, 0.4 + 0.2 * e]);
@@ -344,7 +344,7 @@ fn a_floating_piece_is_held_by_forces_that_balance_its_load() {
         + "[[support]]\non = [\"left\", \"top\"]\ndisplacement_m = [0, \"free\"]\n"
         + &load("top", "traction_pa = [0, -1e-3]");
     let case = parse(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest));
-    let body = Body::new(&case, 1, TRACTION).unwrap();
+    let body = Body::new(&case, 1, &TRACTION).unwrap();
     assert!(!body.elastic.floating().is_empty());
     let system = ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap();
     let load = loading(&body, &case).at(case.path.increments);
@@ -384,7 +384,7 @@ fn reactions_balance_the_load_where_the_crack_meets_a_support() {
 #[test]
 fn too_little_stabilisation_is_refused_with_the_bound() {
     let case = parse(&pushed([-0.1, 0.32], [1.1, 0.61], "none"));
-    let body = Body::new(&case, 1, TRACTION).unwrap();
+    let body = Body::new(&case, 1, &TRACTION).unwrap();
     let system = ContactSystem::new(body.elastic.clone(), friction(&case, &body)).unwrap();
     let refusal = |theta: f64, gamma: f64| {
         let registered = method("nitsche").unwrap();

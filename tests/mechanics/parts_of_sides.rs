@@ -7,7 +7,7 @@ use stickslip::model::extent::{load_extents, support_extents};
 
 fn bodies(text: &str) -> (Case, Body) {
     let case = parse(text);
-    let body = Body::new(&case, 1, Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let body = Body::new(&case, 1, &Needs::default()).unwrap_or_else(|e| panic!("{e}\n{text}"));
     (case, body)
 }
 

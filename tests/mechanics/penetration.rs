@@ -62,7 +62,7 @@ fn faces_overlap_between_edge_pairs_and_stars_bound_it() {
 #[test]
 fn samples_lie_on_the_crack_up_to_its_tips() {
     let case = half_open(10, ContactSpace::Star);
-    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let body = Body::new(&case, 1, &Needs::default()).unwrap();
     assert_eq!(body.samples.len(), 10 * body.surface.facets.len());
     let crack = &body.cracks[0];
     let s: Vec<f64> = body.samples.iter().map(|p| crack.abscissa(&p.x)).collect();

@@ -137,10 +137,10 @@ fn a_crack_without_tips_has_no_branch_functions() {
 fn a_frictionless_sweep_condenses_normal_rows_only() {
     let case = shipped::find("frictionless").unwrap().unwrap();
     let needs = Needs {
-        frictionless: true,
+        frictionless: vec![true],
         ..Needs::default()
     };
-    let body = Body::new(&case, 1, needs).unwrap();
-    assert!(body.elastic.frictionless());
+    let body = Body::new(&case, 1, &needs).unwrap();
+    assert!((0..body.points.len()).all(|i| body.elastic.frictionless(i)));
     assert_eq!(body.elastic.jump().rows(), 2 * body.points.len());
 }

@@ -8,7 +8,7 @@ use stickslip_xfem::fields::sampling::comparison_points;
 use stickslip_xfem::material::{Lame, double_dot, strain};
 
 const TRACTION: Needs = Needs {
-    frictionless: false,
+    frictionless: Vec::new(),
     traction: true,
 };
 
@@ -101,7 +101,7 @@ fn plane_stress_takes_its_own_law() {
         ("plane-strain", 0.7 / (1.3 * 0.4)),
     ] {
         let text = plane([0.0, 0.0], [1.0, 1.0], [3, 3], &rest).replace("plane-strain", model);
-        let body = Body::new(&parse(&text), 1, TRACTION).unwrap();
+        let body = Body::new(&parse(&text), 1, &TRACTION).unwrap();
         let found = body.traction(&piecewise(&body, |_, x| [0.0, -x[1], 0.0]));
         for (point, tau) in body.points.iter().zip(found.chunks_exact(2)) {
             assert!((tau[0] - factor * point.weight).abs() < 1e-13, "{tau:?}");
@@ -127,7 +127,7 @@ fn sides_are_weighted_by_their_part_of_the_cut_cells() {
                     solid([3.0, 3.0, 3.0], [3, 3, 3], &planes, &clamped(3))
                 }),
                 1,
-                TRACTION,
+                &TRACTION,
             )
             .unwrap();
             let h = [gradient(&mut random, dim), gradient(&mut random, dim)];

@@ -191,7 +191,7 @@ proptest! {
             let lines = case.mesh.grid.lines.iter();
             // Many cells take their time, and are none of the reader's affairs.
             if lines.map(|line| line.len() - 1).product::<usize>() <= SMALL
-                && let Err(error) = Body::new(&case, 1, Needs::default())
+                && let Err(error) = Body::new(&case, 1, &Needs::default())
             {
                 assert_clear(&error.to_string(), "", 3);
             }

@@ -343,7 +343,7 @@ mod tests {
             order: (0..n).map(order).collect(),
             free_order: Vec::new(),
             floating: Vec::new(),
-            frictionless: false,
+            frictionless: vec![],
             traction: None,
         }
     }
@@ -391,7 +391,7 @@ mod tests {
             order: (0..n).collect(),
             free_order: Vec::new(),
             floating: Vec::new(),
-            frictionless: false,
+            frictionless: vec![],
             traction: None,
         })
         .unwrap();

@@ -34,8 +34,8 @@ pub struct ElasticParts {
     pub free_order: Vec<usize>,
     /// Basis of the kernel of K: the rigid motions left by the supports, n entries each; empty if K is definite.
     pub floating: Vec<Vec<f64>>,
-    /// Promise that no run on this body will ever have friction: only normal rows are condensed.
-    pub frictionless: bool,
+    /// Promise by point that no run will ever have friction there: of these only normal rows are condensed. Empty: no promise.
+    pub frictionless: Vec<bool>,
     /// Traction operator S, for the methods that need one: S u is the contact force on side 1 that the stress of the
     /// bulk implies at every contact point, rows as in `jump`, in N per m of displacement (2D: N/m²).
     pub traction: Option<JumpOperator>,
@@ -81,7 +81,7 @@ pub struct Elastic {
     jump: JumpOperator,
     weight: Vec<f64>,
     floating: Vec<Vec<f64>>,
-    frictionless: bool,
+    frictionless: Vec<bool>,
     traction: Option<JumpOperator>,
     diagonal: Shared<Vec<f64>>,
     delassus: Shared<(Arc<dyn Delassus>, f64)>,
@@ -127,7 +127,14 @@ impl Elastic {
             check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
             check_len("traction operator columns", traction.cols(), n)?;
         }
-        let rows = condensed_rows(parts.dim, parts.weight.len(), parts.frictionless);
+        if !parts.frictionless.is_empty() {
+            check_len(
+                "frictionless points",
+                parts.frictionless.len(),
+                parts.weight.len(),
+            )?;
+        }
+        let rows = condensed_rows(parts.dim, parts.weight.len(), &parts.frictionless);
         let touched = |&i: &usize| {
             let own = parts.jump.row(i).filter(|e| e.1 != 0.0);
             own.map(|e| e.0).collect()
@@ -135,7 +142,7 @@ impl Elastic {
         let elimination = Elimination {
             contact_last: parts.order,
             free: parts.free_order,
-            in_contact: in_contact(&parts.jump, parts.dim, parts.frictionless),
+            in_contact: in_contact(&parts.jump, parts.dim, &parts.frictionless),
             rows: rows.source.iter().map(touched).collect(),
         };
         let stiffness = SparseStiffness::new(parts.stiffness, elimination, &parts.floating)?;
@@ -197,7 +204,7 @@ impl Elastic {
             jump,
             weight,
             floating,
-            frictionless: false,
+            frictionless: Vec::new(),
             traction: None,
             diagonal: OnceLock::new(),
             delassus: OnceLock::new(),
@@ -250,9 +257,9 @@ impl Elastic {
         &self.floating
     }
 
-    /// Whether only normal rows are ever condensed.
-    pub fn frictionless(&self) -> bool {
-        self.frictionless
+    /// Whether only the normal row of a point is ever condensed.
+    pub fn frictionless(&self, point: usize) -> bool {
+        self.frictionless.get(point).is_some_and(|own| *own)
     }
 
     /// max |w_ij − w_ji| / max |w_ij| of the Delassus operator W that was given; 0 where W comes from a stiffness.
@@ -352,7 +359,7 @@ impl Elastic {
 
     /// Rows that are condensed.
     pub(crate) fn rows(&self) -> RowSet {
-        condensed_rows(self.dim, self.points(), self.frictionless)
+        condensed_rows(self.dim, self.points(), &self.frictionless)
     }
 
     /// The diagonal of W on some of [`rows`](Self::rows). W is not formed for it.
@@ -440,12 +447,19 @@ impl Elastic {
 }
 
 /// All rows of every point, or the normal ones where there will be no friction.
-fn condensed_rows(dim: usize, points: usize, frictionless: bool) -> RowSet {
-    RowSet::new(dim, &vec![if frictionless { 1 } else { dim }; points])
+fn condensed_rows(dim: usize, points: usize, frictionless: &[bool]) -> RowSet {
+    let of = |i| {
+        if frictionless.get(i) == Some(&true) {
+            1
+        } else {
+            dim
+        }
+    };
+    RowSet::new(dim, &(0..points).map(of).collect::<Vec<_>>())
 }
 
 /// The unknowns that move a contact point: they are eliminated last whatever the order.
-pub fn in_contact(jump: &JumpOperator, dim: usize, frictionless: bool) -> Vec<bool> {
+pub fn in_contact(jump: &JumpOperator, dim: usize, frictionless: &[bool]) -> Vec<bool> {
     let mut moved = vec![false; jump.cols()];
     let rows = condensed_rows(dim, jump.rows() / dim, frictionless);
     let entries = rows.source.iter().flat_map(|&i| jump.row(i));

@@ -44,7 +44,7 @@ impl ContactSystem {
                     "not negative, finite",
                 ));
             }
-            if value > 0.0 && elastic.frictionless() {
+            if value > 0.0 && elastic.frictionless(index) {
                 return Err(MethodError::FrictionlessBody {
                     point: index,
                     friction: value,

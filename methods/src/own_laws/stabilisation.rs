@@ -292,7 +292,7 @@ mod tests {
             order: (0..n).collect(),
             free_order: Vec::new(),
             floating: vec![],
-            frictionless: false,
+            frictionless: vec![],
             traction: Some(sparse(m, n, s)),
         })
         .unwrap();

@@ -49,7 +49,7 @@ pub fn parts(
         order: (0..n).collect(),
         free_order: Vec::new(),
         floating,
-        frictionless,
+        frictionless: vec![frictionless; b.len() / dim],
         traction: None,
     }
 }

@@ -75,11 +75,11 @@ pub fn export(case: &Case, request: &Request) -> Result<ExportedIncrement, Expor
     let refine = request.refine.or(case.sweep.refine.first().copied());
     // The files hold all rows, also where nothing rubs.
     let needs = Needs {
-        frictionless: false,
+        frictionless: Vec::new(),
         traction: request.choice.needs_traction(),
     };
     let friction = friction(case, request.friction)?;
-    let body = Body::new(case, refine.unwrap_or(1), needs)?;
+    let body = Body::new(case, refine.unwrap_or(1), &needs)?;
     let of_point = body.points.iter().map(|p| friction[p.crack]);
     let system = ContactSystem::new(body.elastic.clone(), of_point.collect());
     let system = system.map_err(BodyError::from)?;

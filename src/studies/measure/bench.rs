@@ -290,13 +290,14 @@ impl Kept {
     }
 }
 
-/// Demands of a task on the body of a case. Whether normals alone are eliminated first is decided by all friction coefficients
+/// Demands of a task on the body of a case. Whether the normals of a crack alone are condensed is decided by all friction coefficients
 /// of the case, so that neighbouring tasks share a body.
 fn needs(case: &Case, task: &Task) -> Needs {
-    let own = case.cracks.iter().map(|crack| &crack.friction);
-    let mut all = own.chain(&case.sweep.friction).chain(&task.asked.friction);
+    let swept = case.sweep.friction.iter().any(|mu| *mu != 0.0);
+    let pairs = case.cracks.iter().zip(task.asked.friction_by_crack());
+    let frictionless = pairs.map(|(crack, mu)| !swept && crack.friction == 0.0 && mu == 0.0);
     Needs {
-        frictionless: all.all(|mu| *mu == 0.0),
+        frictionless: frictionless.collect(),
         traction: task.traction,
     }
 }
@@ -318,7 +319,7 @@ impl Subject {
         warm_up(case.model.dim());
         memory::reset_peak();
         let needs = needs(&case, task);
-        let body = Body::new(&case, asked.refine, needs)?;
+        let body = Body::new(&case, asked.refine, &needs)?;
         // A failure here is one of every method, whose verdict it is.
         let _told_by_methods = body.elastic.factorise();
         Ok(Self::Body(Box::new(Discretised {
@@ -468,7 +469,7 @@ pub fn warm_up(dim: usize) {
     let run = || -> Option<()> {
         let case = shipped::find(name)?.ok()?;
         let choice = Choice::new(methods().first()?, &[]).ok()?;
-        let body = Body::new(&case, 1, Needs::default()).ok()?;
+        let body = Body::new(&case, 1, &Needs::default()).ok()?;
         let friction = body.points.iter().map(|p| case.cracks[p.crack].friction);
         let system = ContactSystem::new(body.elastic.clone(), friction.collect()).ok()?;
         let mu = case.cracks.first().map_or(0.0, |crack| crack.friction);

@@ -235,7 +235,7 @@ mod tests {
                     assert_eq!(points_of(&own.name()), Some(points));
                     assert_eq!(dimension_of(&own.name()), Some(dim));
                     let case = case::parse("body.toml", own.text()).unwrap();
-                    let body = Body::new(&case, 1, Needs::default());
+                    let body = Body::new(&case, 1, &Needs::default());
                     let found = body.map(|body| body.points.len());
                     let found = found.unwrap_or_else(|e| panic!("{}: {e}", own.name()));
                     println!("{}: {found}", own.name());

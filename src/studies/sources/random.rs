@@ -110,7 +110,7 @@ fn body(dim: usize, seed: u64, number: usize) -> Result<(Specimen, Vec<usize>), 
     let (kind, points) = wanted(dim);
     // The same bodies for all methods, also those that need the stress at the crack.
     let needs = Needs {
-        frictionless: false,
+        frictionless: Vec::new(),
         traction: true,
     };
     for _ in 0..DRAWS {
@@ -119,7 +119,7 @@ fn body(dim: usize, seed: u64, number: usize) -> Result<(Specimen, Vec<usize>), 
         let text = specimen.case(&all, &[1.0]);
         let closing = || -> Result<Option<Vec<usize>>, BodyError> {
             let case = case::parse("random.toml", text.as_str())?;
-            let body = Body::new(&case, 1, needs)?;
+            let body = Body::new(&case, 1, &needs)?;
             if !points.contains(&body.points.len()) {
                 return Ok(None);
             }

@@ -48,7 +48,7 @@ fn prescribed_sides_follow_the_closed_form_on_both_faces() {
         ("plane on facets", block([0.0, 0.0, 2.0], [0.0, 0.0, -1.0])),
     ] {
         let case = exact_case(&text);
-        let body = Body::new(&case, 1, Needs::default()).unwrap();
+        let body = Body::new(&case, 1, &Needs::default()).unwrap();
         let loading = loading(&body, &case);
         let integrator = body.integrator();
         let sides = sides(&case, &body).unwrap();
@@ -208,7 +208,7 @@ fn exact_body_forces_are_integrated_on_each_side() {
         + "[exact]\nsolution = \"two-maps\"\n[[load]]\nbody_n_per_m3 = \"exact\"\n"
         + &clamped(2);
     let case = exact_case(&plane([0.0, 0.0], [1.0, 1.0], [5, 5], &rest));
-    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let body = Body::new(&case, 1, &Needs::default()).unwrap();
     let force = loading(&body, &case).external_force(1);
     let nodes = || body.mesh.nodes.iter().enumerate();
     let x: f64 = nodes().map(|(n, _)| force[2 * n]).sum();
@@ -238,7 +238,7 @@ fn a_closed_form_that_does_not_hold_is_refused_at_its_table() {
         (back, "increment 2: slip must not turn back"),
     ] {
         let case = exact_case(&text);
-        let body = Body::new(&case, 1, Needs::default()).unwrap();
+        let body = Body::new(&case, 1, &Needs::default()).unwrap();
         let Err(BodyError::Case(error)) = Loading::new(&body, &case, 0.3) else {
             panic!("accepted:\n{text}")
         };
@@ -274,7 +274,7 @@ fn stated_and_exact_components_stand_side_by_side() {
         case.supports[0].displacement,
         [Some(Amount::Exact), Some(Amount::Number((-7e-3).into()))]
     );
-    let body = Body::new(&case, 1, Needs::default()).unwrap();
+    let body = Body::new(&case, 1, &Needs::default()).unwrap();
     let loading = loading(&body, &case);
     let u = loading.prescribed_displacement(1);
     let field = loading.exact(1).unwrap();

@@ -87,10 +87,10 @@ fn run(patch: &Patch, case: &Case, space: ContactSpace) -> PatchRow {
     };
     let choices = choices(&["hybrid"]);
     let needs = Needs {
-        frictionless: case.cracks.iter().all(|c| c.friction == 0.0),
+        frictionless: case.cracks.iter().map(|c| c.friction == 0.0).collect(),
         traction: choices[0].needs_traction(),
     };
-    let body = match Body::new(case, 1, needs) {
+    let body = match Body::new(case, 1, &needs) {
         Ok(body) => body,
         Err(refused) => return row(space.name(), Verdict::Refused(refused.to_string())),
     };
