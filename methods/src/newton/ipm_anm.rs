@@ -24,7 +24,8 @@
 //! 20 to 40 steps there, hundreds where the path winds.
 //!
 //! # Failure modes
-//! Ends with `max-iterations` where the path winds for longer, or runs away to infinity: no solution need exist.
+//! A path that runs away to infinity is left for one from deeper inside. Ends with `max-iterations` where paths wind for longer, or
+//! always run away: no solution need exist.
 //!
 //! # Skips
 //! Points without friction have no cone. No line search, no switching of branches.
@@ -70,6 +71,9 @@ const NEAR: f64 = 1e-2;
 const AGAIN: f64 = 0.1;
 /// Newton steps without progress after which the path is taken up again.
 const PATIENCE: usize = 8;
+/// A path with a violation above this runs away; another begins deeper inside the cones.
+const FAR: f64 = 1e6;
+const DEEPER: f64 = 10.0;
 /// Distance from the path that a step may end at, relative to the products there.
 const NEIGHBOURHOOD: f64 = 0.3;
 /// A step that leaves this neighbourhood or σ > 0 is shortened by this factor.
@@ -99,9 +103,8 @@ pub(crate) fn along_series(
     limits: Limits,
     monitor: &mut dyn Monitor,
 ) -> Ended {
-    let (mut at, mut v) = (problem.start(), Vec::new());
-    problem.jump_into(&at.p, &at.beta, &mut v);
-    let (mut path, mut branches) = (Path::from(problem, &at, &v), Branches::default());
+    let (mut at, mut v, mut depth) = (problem.start(), Vec::new(), 1.0);
+    let (mut path, mut branches) = (Path::from(problem, depth), Branches::default());
     let mut cross = NEAR;
     let status = loop {
         problem.jump_into(&at.p, &at.beta, &mut v);
@@ -111,6 +114,10 @@ pub(crate) fn along_series(
             Check::GoOn => {}
             Check::Corrected => continue,
             Check::End(status) => break status,
+        }
+        if violation > FAR {
+            depth *= DEEPER;
+            (path, cross) = (Path::from(problem, depth), NEAR);
         }
         problem.counters.factorisations += 1;
         if !path.expand(problem, order) {
@@ -173,10 +180,11 @@ struct Path {
 }
 
 impl Path {
-    /// From inside the cones, where σ = 1.
-    fn from(problem: &ContactProblem<'_>, start: &Forces, jump: &[f64]) -> Self {
-        let mut x = Iterate::default();
-        x.begin(problem, start, jump, 1.0);
+    /// From the start of the increment, moved so deep inside the cones.
+    fn from(problem: &ContactProblem<'_>, depth: f64) -> Self {
+        let (mut x, start) = (Iterate::default(), problem.start());
+        let jump = problem.jump(&start.p, &start.beta);
+        x.begin(problem, &start, &jump, depth);
         Self {
             here: Place { x, sigma: 1.0 },
             lack: Lack::default(),
