@@ -14,7 +14,7 @@
 //!   x <- s sweeps from x,  s = first · 2^round        a globally sound, slow method
 //!   y <- Newton from x, active sets                   a locally fast one, stopped after 8 steps without progress
 //!   if W is sparse, or the tangent singular:          granular media, redundant points: every later round would fail, too
-//!     y <- interior-point from the start;  leave the rounds
+//!     y <- interior-point from the start, then Newton from y, active sets;  leave the rounds
 //!   y <- Newton from x, B-differentiable              it cycles elsewhere
 //! y <- ipm-anm from the start                         the slowest, and the one that solves most
 //! until the natural map of y, or of x, is small
@@ -95,7 +95,7 @@ const NEWTON_PATIENCE: usize = 8;
 /// Most steps of a Newton run with another scale than the natural one.
 const SCALED_STEPS: usize = 12;
 /// Interior-point steps without progress after which its path is followed by series.
-const PATH_PATIENCE: usize = 15;
+const PATH_PATIENCE: usize = 6;
 /// Rounds of sweeps before the last method.
 const ROUNDS: usize = 5;
 /// Most steps of the interior-point method, and of the one that follows its path.
@@ -152,6 +152,11 @@ impl CondensedMethod for Solver {
                 problem.begin_again();
                 let limits = runs.within(SHARE, PATH_PATIENCE, problem);
                 let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
+                if end.is_final() {
+                    return Ok(end);
+                }
+                let newton = runs.newton(Sets);
+                let end = runs.run(newton, end.at, problem, monitor)?;
                 if end.is_final() {
                     return Ok(end);
                 }
