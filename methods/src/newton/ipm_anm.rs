@@ -11,17 +11,20 @@
 //! F'(x) x_k − 2σ_k/σ F(x) = Σ_{0<i<k} (σ_i σ_{k−i}/σ² F(x) − B(x_i, x_{k−i}))               B: the quadratic part
 //! a = (ε |x_1| / |x_N|)^(1/(N−1))            where the last term is ε of the first
 //! ```
-//! One LU a step for all N terms. Every step follows the path through the iterate, so that there is nothing to correct. By arc length the path may turn back in σ, as
-//! it does where friction lets solutions vanish; a method that lowers σ stalls there. In σ², not σ, points that neither press nor open
-//! at the solution leave the path smooth. ⟨·,·⟩ is taken in units of the reference force and jump.
+//! One LU a step for all N terms. Every step follows the path through the iterate, so that there is nothing to correct; it ends
+//! where products of a point are further than 0.3 from their share. By arc length the path may turn back in σ, as it does where
+//! friction lets solutions vanish; a method that lowers σ stalls there. In σ², not σ, points that neither press nor open at the solution
+//! leave the path smooth. ⟨·,·⟩ is taken in units of the reference force and jump. Whenever σ has fallen to a tenth, Newton's method
+//! with active sets (see `pdas`) is tried from the path, and given up after 8 steps without progress.
 //!
 //! # Options
 //! `order`: N. `accuracy`: ε. `max_iterations`: steps.
 //!
 //! # Guarantees
-//! F' is regular along the path for almost every start; a path that stays bounded ends in a solution. Redundant points are no
-//! obstacle: inside the cones the matrix is regular. Of all methods here it solves most, and it is the slowest on what others solve:
-//! 20 to 40 steps there, hundreds where the path winds.
+//! F' is regular along the path but for turns, which the arc length takes, and a path that stays bounded ends in a solution. Redundant
+//! points are no obstacle: inside the cones the matrix is regular. `stickslip study random` with seed 1, 200 problems for each of
+//! seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 10 steps in the median and 137 at most. It takes hundreds where the path winds: 330 on RockPile
+//! of the Siconos benchmark (463 points, μ = 1). A step costs about four of a Newton method on few points, hardly more than one on many.
 //!
 //! # Failure modes
 //! A path that runs away to infinity is left for one from deeper inside. Ends with `max-iterations` where paths wind for longer, or
