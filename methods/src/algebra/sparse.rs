@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::MatMut;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Mat, MatMut};
 
 use crate::algebra::delassus::{Delassus, Dense};
 use crate::algebra::dense::{SINGULAR, larger, refill, zero};
@@ -34,7 +34,7 @@ impl Sparse {
         } else {
             entries
         };
-        if n < FEWEST || SPARSE * both > n * n {
+        if !is_sparse(n, both) {
             return Ok(None);
         }
         Ok(Some(Self {
@@ -182,6 +182,30 @@ impl Delassus for Sparse {
             Ok(self.w.clone())
         }
     }
+}
+
+/// Whether an operator on so many rows is held by its entries.
+fn is_sparse(rows: usize, entries: usize) -> bool {
+    rows >= FEWEST && SPARSE * entries <= rows * rows
+}
+
+/// A symmetric W that was computed in full: of many bodies that touch here and there most entries are 0.
+pub(crate) fn computed(w: Mat<f64>) -> Result<Arc<dyn Delassus>, MethodError> {
+    let columns = || (0..w.ncols()).map(|j| w.col_as_slice(j));
+    let entries = columns().flatten().filter(|w| **w != 0.0).count();
+    if !is_sparse(w.ncols(), entries) {
+        return Ok(Arc::new(Dense::new(w, true)));
+    }
+    let (mut ends, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    for (j, column) in columns().enumerate() {
+        let kept = column.iter().enumerate().skip(j);
+        for (i, &value) in kept.filter(|(i, w)| *i == j || **w != 0.0) {
+            rows.push(i);
+            values.push(value);
+        }
+        ends.push(values.len());
+    }
+    held(&SquareMatrix::symmetric(w.ncols(), ends, rows, values)?)
 }
 
 /// W as its entries are few or many.
@@ -337,6 +361,8 @@ mod tests {
         agree(&|w| w.select(&at).unwrap().to_matrix().col_as_slice(3).to_vec());
         assert_eq!(sparse.matrix().unwrap(), chain(n, -1.5));
         assert!(sparse.is_definite(0.0) && !sparse.is_definite(-2.0));
+        let again = computed(full.to_matrix()).unwrap();
+        assert_eq!(again.sparse().unwrap().w, sparse.w);
     }
 
     /// c on the diagonal, 1 below it and in the far corner: its eigenvalues are c + ωᵏ, ω an even root of 1. Source: x itself. The

@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::algebra::condensation::{self, Tractions};
-use crate::algebra::delassus::{Delassus, Dense, check_rows, dense};
+use crate::algebra::delassus::{Delassus, check_rows, dense};
 use crate::algebra::dense::{norm, ratio};
 use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
-use crate::algebra::sparse::{Sparse, held};
+use crate::algebra::sparse::{Sparse, computed, held};
 use crate::algebra::strips::cholesky;
 use crate::error::MethodError;
 
@@ -148,7 +148,7 @@ impl Stiffness for SparseStiffness {
 
     fn delassus(&self, jump: &JumpOperator, rows: &[usize]) -> Result<Formed, MethodError> {
         let (w, diagonal) = condensation::condense(self.factor()?, jump, rows)?;
-        Ok((Arc::new(Dense::new(w, true)), diagonal))
+        Ok((computed(w)?, diagonal))
     }
 
     fn tractions(
