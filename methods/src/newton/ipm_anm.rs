@@ -206,7 +206,9 @@ impl Path {
         }
         // x_k = σ_k y + z_k,  F' y = 2/σ F(x).
         let (mut y, mut right) = (Iterate::default(), self.lack.times(-2.0 / sigma));
-        let mut regular = self.equations.direction(problem, x, &right, &mut y);
+        if !(self.equations).direction(problem, x, &right, &mut y) {
+            return false;
+        }
         let square = 1.0 + product(problem, &y, &y);
         let ahead = (self.tangent.as_ref()).map_or(-1.0, |t| product(problem, &y, &t.x) + t.sigma);
         let mut first = Place {
@@ -227,12 +229,14 @@ impl Path {
                 }
             }
             let mut term = Place::default();
-            regular &= (self.equations).direction(problem, x, &right, &mut term.x);
+            if !(self.equations).direction(problem, x, &right, &mut term.x) {
+                return false;
+            }
             term.sigma = -product(problem, &term.x, &y) / square;
             term.x.move_along(term.sigma, &y);
             self.series.push(term);
         }
-        regular
+        true
     }
 
     /// Along the series as far as it is accurate, inside the cones and above σ = 0; false if that is nowhere.
