@@ -188,8 +188,12 @@ pub(crate) fn alternate(
 
 /// The best k₀ in N/m, 1/√(w_min w_max). A body that is rigid at its contact points has none; ρ still has the right units.
 fn best_direction(operator: &ContactOperator) -> f64 {
-    extremes(&*operator.w, &operator.modes)
-        .map_or(operator.rho, |(least, most)| 1.0 / (least * most).sqrt())
+    let mean = |(least, most): (f64, f64)| match least * most {
+        square if square.is_normal() => square.sqrt(),
+        // Out of the range of numbers.
+        _ => least.sqrt() * most.sqrt(),
+    };
+    extremes(&*operator.w, &operator.modes).map_or(operator.rho, |both| 1.0 / mean(both))
 }
 
 /// P̂ + k₀ v̂ = 2 P̂ − z by row, in place of what `target` holds; how many points changed their branch.
