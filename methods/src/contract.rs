@@ -1,6 +1,7 @@
 //! The seam of a method, its answer, and its judge: body, increment, state, laws, judge, options, registry.
 
 pub(crate) mod barrier_law;
+pub(crate) mod body_work;
 pub(crate) mod elastic;
 pub(crate) mod free_jump;
 pub(crate) mod judge;
@@ -14,7 +15,8 @@ pub(crate) mod state;
 pub(crate) mod system;
 pub(crate) mod tier;
 
-pub use elastic::{Elastic, ElasticCounters, ElasticParts, ElasticTimings, in_contact};
+pub use body_work::{ElasticCounters, ElasticTimings};
+pub use elastic::{Elastic, ElasticParts, in_contact};
 pub use judge::{Residuals, consistency, residuals, residuals_of};
 pub use operator::{ContactOperator, DelassusForm, SWAYING};
 pub use options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};

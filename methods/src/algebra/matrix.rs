@@ -197,19 +197,23 @@ impl SquareMatrix {
         }
     }
 
+    /// max |a_ij|.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+    }
+
     /// How far it is from its transpose: max |a_ij − a_ji| / max |a_ij|; 0 for a symmetric matrix.
     pub fn asymmetry(&self) -> f64 {
         if self.symmetric {
             return 0.0;
         }
-        let largest = self.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let beside = |j| {
             self.column(j)
                 .map(move |(i, a)| (a - self.stored(j, i)).abs())
         };
         match (0..self.n).flat_map(beside).fold(0.0, f64::max) {
             0.0 => 0.0,
-            most => most / largest,
+            most => most / self.largest(),
         }
     }
 }

@@ -88,11 +88,6 @@ impl Sparse {
         let factor = SparseColMatRef::new(pattern, &values).sp_cholesky(faer::Side::Lower);
         factor.is_ok()
     }
-
-    /// The largest entry.
-    pub fn largest(&self) -> f64 {
-        self.w.values().iter().fold(0.0, |m: f64, w| m.max(w.abs()))
-    }
 }
 
 impl Delassus for Sparse {

@@ -218,21 +218,17 @@ impl DelassusOnly {
     /// Whether W, symmetric, moved by [`INDEFINITE`] times its largest entry has no Cholesky factor. What is too large to be
     /// formed is not known to be.
     fn has_negative_eigenvalue(&self) -> bool {
+        let shift = INDEFINITE * self.w.largest();
+        if shift == 0.0 {
+            return false;
+        }
         if let Ok(Some(sparse)) = Sparse::of(&self.w) {
-            let largest = sparse.largest();
-            return largest > 0.0 && !sparse.is_definite(INDEFINITE * largest);
+            return !sparse.is_definite(shift);
         }
         let Ok(mut full) = dense(&self.w) else {
             return false;
         };
-        let columns = 0..full.ncols();
-        let largest = columns
-            .flat_map(|j| full.col_as_slice(j))
-            .fold(0.0, |m: f64, w| m.max(w.abs()));
-        if largest == 0.0 {
-            return false;
-        }
-        (0..full.ncols()).for_each(|j| full[(j, j)] += INDEFINITE * largest);
+        (0..full.ncols()).for_each(|j| full[(j, j)] += shift);
         cholesky(full.as_mut()).is_err()
     }
 }

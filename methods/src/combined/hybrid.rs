@@ -185,14 +185,10 @@ struct NewtonRuns<'s> {
 
 impl NewtonRuns<'_> {
     fn newton<S: Scheme>(&mut self, scheme: S) -> Newton<S> {
+        let limits = Limits::new(self.settings.max_iterations, NEWTON_PATIENCE);
         Newton {
-            scheme,
             multiple: self.multiple,
-            limits: Limits::new(self.settings.max_iterations, NEWTON_PATIENCE),
-            line_search: true,
-            rescue: false,
-            regularise: true,
-            tangent: std::mem::take(self.tangent),
+            ..Newton::plain(scheme, limits, std::mem::take(self.tangent))
         }
     }
 

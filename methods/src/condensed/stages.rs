@@ -147,10 +147,7 @@ pub(crate) fn rescue(problem: &mut ContactProblem<'_>) -> Result<Option<Pair>, M
 
 /// That many sweeps of both stages from the start of the increment; `None` if the rigid motions move no row. Where W is
 /// not formed, neither is I + k₀ W: the matrix of the whole body takes its place.
-pub(crate) fn alternate(
-    problem: &mut ContactProblem<'_>,
-    sweeps: usize,
-) -> Result<Option<Pair>, MethodError> {
+fn alternate(problem: &mut ContactProblem<'_>, sweeps: usize) -> Result<Option<Pair>, MethodError> {
     let (mut pair, mut new) = (Pair::start(problem), Pair::default());
     let (mut branches, mut target) = (Branches::default(), Vec::new());
     let k0 = best_direction(&problem.operator);
@@ -235,20 +232,16 @@ fn stage_rows(
 
 /// x := (I + k₀ W)⁻¹ b; NaN, which no judge accepts, where it left the finite range.
 fn apply(factor: &Factor, b: &[f64], x: &mut Vec<f64>) {
-    match factor {
+    let finite = match factor {
         Factor::Cholesky(factor) => {
             b.clone_into(x);
             factor.solve_in_place(MatMut::from_column_major_slice_mut(x, b.len(), 1));
+            true
         }
-        Factor::Lu(factor) => {
-            if !factor.solve_into(b, x) {
-                x.fill(f64::NAN);
-            }
-        }
-        Factor::Sparse(factor) => {
-            if !factor.solve_into(b, x) {
-                x.fill(f64::NAN);
-            }
-        }
+        Factor::Lu(factor) => factor.solve_into(b, x),
+        Factor::Sparse(factor) => factor.solve_into(b, x),
+    };
+    if !finite {
+        x.fill(f64::NAN);
     }
 }

@@ -91,15 +91,8 @@ impl FixedPoint {
         x: Forces,
         monitor: &mut dyn Monitor,
     ) -> Result<End, MethodError> {
-        let mut newton = Newton {
-            scheme: AlartCurnier,
-            multiple: 1.0,
-            limits: Limits::new(self.settings.max_iterations, POLISH_PATIENCE),
-            line_search: true,
-            rescue: false,
-            regularise: true,
-            tangent: Tangent::default(),
-        };
+        let limits = Limits::new(self.settings.max_iterations, POLISH_PATIENCE);
+        let mut newton = Newton::plain(AlartCurnier, limits, Tangent::default());
         newton.run(problem, x, monitor)
     }
 

@@ -13,6 +13,7 @@ use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::rank;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
+use crate::contract::body_work::{ElasticCounters, ElasticTimings};
 use crate::contract::operator::ContactOperator;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
 
@@ -39,35 +40,6 @@ pub struct ElasticParts {
     /// Traction operator S, for the methods that need one: S u is the contact force on side 1 that the stress of the
     /// bulk implies at every contact point, rows as in `jump`, in N per m of displacement (2D: N/m²).
     pub traction: Option<JumpOperator>,
-}
-
-/// How often the body was factored, solved with and condensed so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ElasticCounters {
-    /// Sparse factorisations of K (0 or 1).
-    pub factorisations: usize,
-    /// Solves with the factor; refinement steps belong to the solve they refine.
-    pub solves: usize,
-    /// Products with a Delassus operator that is not formed, one solve each.
-    pub products: usize,
-    /// Condensations to the contact points (0 or 1): how often the Delassus operator was formed.
-    pub condensations: usize,
-}
-
-/// Wall-clock times of work with K, in s; 0 for work not done. All but the last are shared by all runs on the body.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ElasticTimings {
-    /// Elimination order and symbolic factorisation.
-    pub analysis_s: f64,
-    /// Scaling and numeric factorisation.
-    pub factorisation_s: f64,
-    /// Delassus operator.
-    pub condensation_s: f64,
-    /// Condensation of the traction operator, for the methods that need it.
-    pub traction_s: f64,
-    /// Work on all unknowns in all runs so far: from loads to the free jump, from contact forces back to displacements, and
-    /// checks of equilibrium.
-    pub on_body_s: f64,
 }
 
 /// What is computed on first use.

@@ -149,15 +149,7 @@ fn cross_over(
     monitor: &mut dyn Monitor,
 ) -> Ended {
     problem.begin_phase();
-    let mut newton = Newton {
-        scheme: Sets,
-        multiple: 1.0,
-        limits: Limits::new(most, PATIENCE),
-        line_search: true,
-        rescue: false,
-        regularise: true,
-        tangent: Tangent::default(),
-    };
+    let mut newton = Newton::plain(Sets, Limits::new(most, PATIENCE), Tangent::default());
     let end = newton.run(problem, at.clone(), monitor);
     problem.begin_phase();
     end

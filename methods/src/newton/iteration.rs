@@ -86,14 +86,25 @@ enum Stop {
 impl<S: Scheme> Newton<S> {
     /// The method as its options say, with all safeguards.
     pub fn new(scheme: S, options: &Options, max_iterations: &Whole) -> Self {
+        let limits = Limits::new(options.count(max_iterations), PATIENCE);
+        let tangent = Tangent::new(options.switch(&MONOLITHIC));
+        Self {
+            multiple: options.real(&R),
+            rescue: true,
+            ..Self::plain(scheme, limits, tangent)
+        }
+    }
+
+    /// The method without rescues, in the memory of a tangent.
+    pub fn plain(scheme: S, limits: Limits, tangent: Tangent) -> Self {
         Self {
             scheme,
-            multiple: options.real(&R),
-            limits: Limits::new(options.count(max_iterations), PATIENCE),
+            multiple: 1.0,
+            limits,
             line_search: true,
-            rescue: true,
+            rescue: false,
             regularise: true,
-            tangent: Tangent::new(options.switch(&MONOLITHIC)),
+            tangent,
         }
     }
 
