@@ -196,6 +196,8 @@ struct Vertices<'a> {
     found: HashMap<([i64; 3], Faces), usize>,
     /// Length below which places are equal [m]: far below a cell, far above rounding.
     quantum: f64,
+    /// Cracks that may touch a cell.
+    near: HashMap<usize, Vec<usize>>,
 }
 
 impl<'a> Vertices<'a> {
@@ -205,7 +207,12 @@ impl<'a> Vertices<'a> {
             .chunks_exact(dim)
             .map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)])
             .collect();
+        let mut near = HashMap::<usize, Vec<usize>>::new();
+        for (k, crack) in body.cracks.iter().enumerate() {
+            (crack.cells().iter()).for_each(|cell| near.entry(*cell).or_default().push(k));
+        }
         Vertices {
+            near,
             body,
             points: body.mesh.nodes.clone(),
             displacement,
@@ -220,7 +227,7 @@ impl<'a> Vertices<'a> {
         let nodes = body.mesh.cell(cell).iter().map(|&n| n as usize);
         let node = nodes.into_iter().find(|&n| body.mesh.nodes[n] == *x);
         let faces = match body.enrichment.partition(cell) {
-            Some(partition) => self.cut_faces(&partition.parts[region], x),
+            Some(partition) => self.cut_faces(cell, &partition.parts[region], x),
             None => node.map_or_else(Vec::new, |node| self.reached_faces(cell, node)),
         };
         if let Some(node) = node {
@@ -247,10 +254,13 @@ impl<'a> Vertices<'a> {
         crack.jumps_at(x, self.quantum) && !crack.parents.iter().any(beyond)
     }
 
+    fn near_cell(&self, cell: usize) -> &[usize] {
+        self.near.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
     /// Faces of a part of a cut cell at a point; also those of cracks that cut no more of the cell than this point, as where
     /// cracks cross at a node: the cells around it must name the same faces.
-    fn cut_faces(&self, part: &Part, x: &Point) -> Faces {
-        let cracks = 0..self.body.cracks.len();
+    fn cut_faces(&self, cell: usize, part: &Part, x: &Point) -> Faces {
         let on = |&crack: &usize| {
             self.body.cracks[crack].distance(x).abs() <= self.quantum && self.jumps(crack, x)
         };
@@ -262,7 +272,7 @@ impl<'a> Vertices<'a> {
             }
             None => self.body.cracks[crack].distance(&mean(&part.polygon)),
         };
-        cracks
+        (self.near_cell(cell).iter().copied())
             .filter(on)
             .map(|crack| (crack, side(crack) > 0.0))
             .collect()
@@ -273,8 +283,7 @@ impl<'a> Vertices<'a> {
         let body = self.body;
         let x = &body.mesh.nodes[node];
         let centre = body.mesh.centre(cell);
-        let cracks = 0..body.cracks.len();
-        cracks
+        (self.near_cell(cell).iter().copied())
             .filter(|&k| body.cracks[k].holds(node as u32) && self.jumps(k, x))
             .filter(|_| !body.enrichment.enriched_of(node).is_empty())
             .map(|k| (k, body.cracks[k].distance(&centre) > 0.0))

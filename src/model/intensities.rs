@@ -14,7 +14,7 @@
 use stickslip_methods::PointStatus;
 use stickslip_xfem::discretisation::norms::side_of;
 use stickslip_xfem::discretisation::tips::{
-    FIT_REACH, FRONT_POINTS, Loads, WAYS, crack_size, front_place, tip_fronts, tip_intensities,
+    FIT_REACH, FRONT_POINTS, Loads, SolvedBody, WAYS, crack_size, front_place, tip_fronts,
     tip_place,
 };
 use stickslip_xfem::geometry::tip_frame::TipFrame;
@@ -48,6 +48,8 @@ pub fn intensities(loading: &Loading<'_>, increment: usize, now: &Snapshot) -> V
         body_force: &force,
         initial_stress: loading.initial_stress(increment),
     };
+    let state = [&now.u[..], &now.p[..]];
+    let solved = SolvedBody::new(body, &body.surface.quadrature, state, &loads);
     let mut rows = Vec::new();
     for (at, tip) in tip_fronts(body) {
         let row = |name: &str, component: &str, value: f64, error: f64| Quantity {
@@ -55,7 +57,7 @@ pub fn intensities(loading: &Loading<'_>, increment: usize, now: &Snapshot) -> V
             error_kind: if error.is_nan() { "" } else { ESTIMATE }.into(),
             ..Quantity::new([name, &at, component], value, dim)
         };
-        match of_tip(loading, now, &tip, &loads) {
+        match of_tip(loading, now, &solved, &tip) {
             Ok([k, apart]) => {
                 let rates = |k: [f64; 3]| rate(k, plane_modulus(body.lame), body.lame.mu);
                 for c in 0..dim {
@@ -78,11 +80,10 @@ pub fn intensities(loading: &Loading<'_>, increment: usize, now: &Snapshot) -> V
 fn of_tip(
     loading: &Loading<'_>,
     now: &Snapshot,
+    solved: &SolvedBody<'_>,
     tip: &TipFrame,
-    loads: &Loads<'_>,
 ) -> Result<[[f64; 3]; 2], String> {
-    let (body, state) = (loading.body(), [&now.u[..], &now.p[..]]);
-    let found = tip_intensities(body, &body.surface.quadrature, tip, state, loads, WAYS);
+    let found = solved.intensities(tip, WAYS);
     let found = found.map_err(|error| error.to_string())?;
     let [mut k, apart] = found.best().ok_or_else(|| match found.obstacle {
         Some(obstacle) => format!("its surroundings reach {obstacle}"),

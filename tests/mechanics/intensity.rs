@@ -8,7 +8,7 @@ use stickslip::run::progress::Quiet;
 use stickslip::studies::cases::{self, Settings, run_case};
 use stickslip_xfem::contact::surface_point::{SurfacePoint, jump_at};
 use stickslip_xfem::cut::placement::cells_at;
-use stickslip_xfem::discretisation::tips::{Loads, fronts, tip_fronts, tip_intensities};
+use stickslip_xfem::discretisation::tips::{Loads, SolvedBody, fronts, tip_fronts};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::fields::sampling::ComparisonPoint;
@@ -280,13 +280,14 @@ fn errors(field: &Griffith, cells: usize, tractions: Tractions, stress: &str) ->
     }
     let surface = surface(&body, 5);
     let mut worst = [0.0f64; 2];
+    let loads = Loads {
+        body_force: &|_, _| [0.0; 3],
+        initial_stress: [[0.0; 3]; 3],
+    };
+    let solved = SolvedBody::new(&body, &surface, [&now.u, &now.p], &loads);
     for (at, tip) in tip_fronts(&body) {
         let exact = field.intensity(&tip.position).unwrap();
-        let loads = Loads {
-            body_force: &|_, _| [0.0; 3],
-            initial_stress: [[0.0; 3]; 3],
-        };
-        let found = tip_intensities(&body, &surface, &tip, [&now.u, &now.p], &loads, 1).unwrap();
+        let found = solved.intensities(&tip, 1).unwrap();
         let (jump, integral) = (found.jumps[0], found.integrals[0]);
         let size = exact[0].hypot(exact[1]);
         for (worst, k) in worst.iter_mut().zip([[jump[0], jump[1]], integral]) {

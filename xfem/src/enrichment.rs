@@ -18,6 +18,7 @@ use crate::cut::is_split;
 use crate::cut::off_facets::AlongFacet;
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
+use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::clip::{Side, snapped};
@@ -95,14 +96,14 @@ impl Enrichment {
         })?;
         let tips = match mesh.dim() {
             2 => Tips::flat(mesh, lengths, cracks, &trace)?,
-            _ => Tips::solid(mesh, lengths, cracks),
+            _ => Tips::solid(mesh, cracks),
         };
         let divided = tips.partitions.values().chain(tips.endings.values());
         let faces = divided.flat_map(|p| &p.faces);
         let present: BTreeSet<usize> = faces.map(|f| cracks[f.crack].number).collect();
         for crack in cracks {
             if !present.contains(&crack.number) {
-                return Err(if enters(mesh, lengths, crack) {
+                return Err(if enters(mesh, crack) {
                     EnrichmentError::TooShort(crack.number)
                 } else {
                     EnrichmentError::Outside(crack.number)
@@ -114,7 +115,7 @@ impl Enrichment {
             let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
             own.into_iter().for_each(|crack| cut_by[crack].push(cell));
         }
-        let pieces = support_pieces(mesh, lengths, cracks, &trace, &tips.partitions, beside);
+        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions, beside);
         let standard = mesh.nodes.len();
         let plain = (0..standard as u32).map(|node| Function {
             node,
@@ -393,7 +394,7 @@ fn beside(frame: &TipFrame, map: &CellMap, rounding: f64) -> Side {
 }
 
 /// Whether a crack has a part inside the body.
-fn enters(mesh: &Mesh, lengths: &Lengths, crack: &Crack) -> bool {
+fn enters(mesh: &Mesh, crack: &Crack) -> bool {
     let middles = crack.path.windows(2).map(|w| mean([&w[0].x, &w[1].x]));
     let centre = match &crack.geometry {
         Geometry::Ellipse(ellipse) => Some(ellipse.centre),
@@ -401,5 +402,5 @@ fn enters(mesh: &Mesh, lengths: &Lengths, crack: &Crack) -> bool {
     };
     middles
         .chain(centre)
-        .any(|x| !lengths.cells_at(mesh, &x).is_empty())
+        .any(|x| !cells_at(mesh, &x).is_empty())
 }

@@ -9,6 +9,7 @@ pub mod ordering;
 pub mod stream;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::{Point, norm, sub};
@@ -39,6 +40,8 @@ pub struct Mesh {
     pub sides: BTreeMap<String, Vec<Facet>>,
     /// Where x = 0 lies in the coordinates that places were stated in: they were rounded there [m].
     pub origin: Point,
+    /// See [`surroundings`](Self::surroundings); once it is asked for, nodes stay where they are.
+    surroundings: OnceLock<Boxes>,
 }
 
 /// Lengths of a mesh as it is.
@@ -52,8 +55,6 @@ pub struct Lengths {
     pub extent: (f64, Point),
     /// See [`Mesh::rounding`] [m].
     pub rounding: f64,
-    /// Every cell with its neighbourhood, see [`Mesh::surroundings`].
-    pub cells: Boxes,
 }
 
 impl Mesh {
@@ -72,6 +73,7 @@ impl Mesh {
             cells,
             sides,
             origin: [0.0; 3],
+            surroundings: OnceLock::new(),
         }
     }
 
@@ -172,14 +174,15 @@ impl Mesh {
             of_nodes,
             extent: self.extent(),
             rounding: self.rounding(),
-            cells: self.surroundings(),
         }
     }
 
     /// Boxes of the cells, larger by three of their longest edges: what may touch a cell or its neighbours.
-    pub fn surroundings(&self) -> Boxes {
-        let maps = (0..self.cell_count()).map(|cell| self.map(cell));
-        Boxes::new(maps.map(|map| around(map.iter(), 3.0 * map.longest_edge())))
+    pub fn surroundings(&self) -> &Boxes {
+        self.surroundings.get_or_init(|| {
+            let maps = (0..self.cell_count()).map(|cell| self.map(cell));
+            Boxes::new(maps.map(|map| around(map.iter(), 3.0 * map.longest_edge())))
+        })
     }
 
     /// Rounding of positions: what differences of the coordinates they were stated in carry [m].

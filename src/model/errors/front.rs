@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_xfem::contact::surface_point::SurfacePoint;
 use stickslip_xfem::discretisation::norms::side_of;
-use stickslip_xfem::discretisation::tips::{Loads, crack_size, tip_fronts, tip_intensities};
+use stickslip_xfem::discretisation::tips::{Loads, SolvedBody, crack_size, tip_fronts};
 use stickslip_xfem::exact::Field;
 use stickslip_xfem::geometry::Point;
 use stickslip_xfem::stiffness::cell_matrix::CellError;
@@ -23,21 +23,22 @@ pub(super) fn rows(
     scales: &Scales,
 ) -> Result<Vec<Deviation>, CellError> {
     let mut rows = Vec::new();
+    let body_force = |x: &Point, side: Option<f64>| {
+        let side = side.unwrap_or_else(|| side_of(body, x));
+        field.body_force(x, side)
+    };
+    let loads = Loads {
+        body_force: &body_force,
+        initial_stress: [[0.0; 3]; 3],
+    };
+    let solved = SolvedBody::new(body, surface, [&now.u, &now.p], &loads);
     for (at, tip) in tip_fronts(body) {
         let Some(exact) = field.intensity(&tip.position) else {
             continue;
         };
         let size = exact.iter().map(|k| k * k).sum::<f64>().sqrt();
         let scale = scales.stress * (0.5 * PI * crack_size(&body.cracks[tip.crack])).sqrt();
-        let body_force = |x: &Point, side: Option<f64>| {
-            let side = side.unwrap_or_else(|| side_of(body, x));
-            field.body_force(x, side)
-        };
-        let loads = Loads {
-            body_force: &body_force,
-            initial_stress: [[0.0; 3]; 3],
-        };
-        let found = tip_intensities(body, surface, &tip, [&now.u, &now.p], &loads, 1)?;
+        let found = solved.intensities(&tip, 1)?;
         let jump = found.jumps.first().copied().unwrap_or([f64::NAN; 3]);
         let interaction = found.integrals.first().copied().unwrap_or([f64::NAN; 2]);
         let mut pairs = vec![

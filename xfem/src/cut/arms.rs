@@ -12,6 +12,7 @@ use crate::mesh::{Lengths, Mesh};
 
 use super::crack::{Crack, End, Geometry, Parent, PathVertex};
 use super::is_split;
+use super::placement::cells_at;
 
 /// Bends sharper than this part a crack [rad]: ten degrees.
 const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
@@ -83,7 +84,7 @@ pub fn arms(
         .iter()
         .map(|crack| boxes.meeting(&extents(crack)))
         .collect();
-    let inside = |x: &Point| !lengths.cells_at(mesh, x).is_empty();
+    let inside = |x: &Point| !cells_at(mesh, x).is_empty();
     for k in 0..cracks.len() {
         for end in 0..if is_closed(&cracks[k]) { 0 } else { 2 } {
             if !places.join(&cracks, (k, end), &near[k], inside) {

@@ -197,7 +197,7 @@ impl Crack {
             tip,
             near: Arc::default(),
         };
-        let cells = lengths.cells.meeting(&crack.extents());
+        let cells = mesh.surroundings().meeting(&crack.extents());
         let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
         let phi = nodes.iter().map(|&node| {
             let on = on_crack(lengths.of_nodes[node as usize], lengths.rounding);

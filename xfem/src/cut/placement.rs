@@ -3,7 +3,7 @@
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled};
-use crate::mesh::{Lengths, Mesh};
+use crate::mesh::Mesh;
 
 use super::crack::{Crack, Geometry, crossings};
 use super::is_split;
@@ -107,20 +107,9 @@ pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(usize, Point, Point)> {
 
 /// Cells whose closure contains a point, within 1e-9 of their diagonal.
 pub fn cells_at(mesh: &Mesh, x: &Point) -> Vec<usize> {
-    let near = 0..mesh.cell_count();
-    near.filter(holding(mesh, x)).collect()
-}
-
-impl Lengths {
-    /// The same, found by place.
-    pub fn cells_at(&self, mesh: &Mesh, x: &Point) -> Vec<usize> {
-        let near = self.cells.meeting(&[*x; 2]).into_iter();
-        near.filter(holding(mesh, x)).collect()
-    }
-}
-
-fn holding(mesh: &Mesh, x: &Point) -> impl Fn(&usize) -> bool {
-    move |&cell| reference_position(mesh, cell, x, ON_EDGE).is_some()
+    let mut near = mesh.surroundings().meeting(&[*x; 2]);
+    near.retain(|&cell| reference_position(mesh, cell, x, ON_EDGE).is_some());
+    near
 }
 
 /// Reference position of a point in the closure of a cell, give or take `slack` diagonals; `None` if it lies outside.

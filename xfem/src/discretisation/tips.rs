@@ -130,21 +130,62 @@ pub struct Loads<'a> {
     pub initial_stress: [Point; 3],
 }
 
-/// Intensities at a tip from the discrete solution: all unknowns and the contact forces; `surface`: quadrature points of all
-/// crack surfaces; `ways`: domains and reaches that are wanted at most, [`WAYS`] for all.
-///
-/// # Errors
-/// [`CellError`] of a cell that cannot be integrated.
-pub fn tip_intensities(
-    body: &Discretisation,
-    surface: &[SurfacePoint],
+/// A solved body as all of its tips see it.
+pub struct SolvedBody<'a> {
+    body: &'a Discretisation,
+    /// All unknowns.
+    u: &'a [f64],
+    loads: &'a Loads<'a>,
+    /// Quadrature points of all crack surfaces with the contact traction on side 1 [Pa].
+    faces: Vec<(&'a SurfacePoint, Point)>,
+    fronts: Vec<TipFrame>,
+}
+
+impl<'a> SolvedBody<'a> {
+    /// From all unknowns and the contact forces; `surface`: quadrature points of all crack surfaces.
+    pub fn new(
+        body: &'a Discretisation,
+        surface: &'a [SurfacePoint],
+        [u, p]: [&'a [f64]; 2],
+        loads: &'a Loads<'a>,
+    ) -> Self {
+        let dim = body.mesh.dim();
+        let faces = surface.iter().map(|q| {
+            let local = q.traction(dim, &body.points, p);
+            let mut traction = [0.0; 3];
+            for (value, axis) in local.iter().zip(&q.frame) {
+                traction = add_scaled(&traction, *value, axis);
+            }
+            // Of the strain alone: the normal points into side 1, on which σ₀ exerts −σ₀ n.
+            let implied = loads.initial_stress.map(|row| dot(&row, &q.frame[0]));
+            (q, add_scaled(&traction, 1.0, &implied))
+        });
+        Self {
+            faces: faces.collect(),
+            fronts: fronts(body),
+            body,
+            u,
+            loads,
+        }
+    }
+
+    /// Intensities at a tip; `ways`: domains and reaches that are wanted at most, [`WAYS`] for all.
+    ///
+    /// # Errors
+    /// [`CellError`] of a cell that cannot be integrated.
+    pub fn intensities(&self, tip: &TipFrame, ways: usize) -> Result<TipIntensities, CellError> {
+        intensities(self, tip, ways)
+    }
+}
+
+fn intensities(
+    solved: &SolvedBody<'_>,
     tip: &TipFrame,
-    [u, p]: [&[f64]; 2],
-    loads: &Loads<'_>,
     ways: usize,
 ) -> Result<TipIntensities, CellError> {
+    let SolvedBody { body, u, .. } = *solved;
     let integrator = body.integrator();
-    let (mesh, dim) = (&body.mesh, body.mesh.dim());
+    let mesh = &body.mesh;
     let crack = &body.cracks[tip.crack];
     let edges = (cells_at(mesh, &tip.position).into_iter()).map(|c| mesh.map(c).longest_edge());
     let size = edges.fold(0.0, f64::max);
@@ -155,7 +196,7 @@ pub fn tip_intensities(
             to,
         }
     });
-    if dim == 3 {
+    if mesh.dim() == 3 {
         let jump = |x: &Point| jump_at(&integrator, tip.crack, x, u);
         let fit = |range| jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump);
         return Ok(TipIntensities {
@@ -164,9 +205,9 @@ pub fn tip_intensities(
             obstacle: None,
         });
     }
-    let own = surface.iter().filter(|p| p.crack == crack.number);
+    let own = (solved.faces.iter()).filter(|(p, _)| p.crack == crack.number);
     let samples = own
-        .map(|p| (p, norm(&sub(&p.x, &tip.position))))
+        .map(|(p, _)| (p, norm(&sub(&p.x, &tip.position))))
         .filter(|(_, distance)| *distance <= ranges[0].to)
         .map(|(p, distance)| JumpSample {
             distance,
@@ -175,19 +216,6 @@ pub fn tip_intensities(
         });
     let samples: Vec<JumpSample> = samples.collect();
     let fit = |range| jump_fit(tip, body.lame, range, samples.iter().copied());
-    let faces: Vec<(&SurfacePoint, Point)> = surface
-        .iter()
-        .map(|q| {
-            let local = q.traction(dim, &body.points, p);
-            let mut traction = [0.0; 3];
-            for (value, axis) in local.iter().zip(&q.frame) {
-                traction = add_scaled(&traction, *value, axis);
-            }
-            // Of the strain alone: the normal points into side 1, on which σ₀ exerts −σ₀ n.
-            let implied = loads.initial_stress.map(|row| dot(&row, &q.frame[0]));
-            (q, add_scaled(&traction, 1.0, &implied))
-        })
-        .collect();
     let gradients = |cell: usize, points: &[ComparisonPoint]| {
         let mut stress = integrator.stress(cell)?;
         let at = |p: &ComparisonPoint| {
@@ -196,11 +224,10 @@ pub fn tip_intensities(
         };
         Ok(points.iter().map(at).collect::<Vec<_>>())
     };
-    let fronts = fronts(body);
     let fields = Fields {
         gradients: &gradients,
-        faces: &faces,
-        body_force: loads.body_force,
+        faces: &solved.faces,
+        body_force: solved.loads.body_force,
     };
     let (mut integrals, mut obstacles) = (Vec::new(), Vec::new());
     for cells in DOMAIN_CELLS {
@@ -209,7 +236,7 @@ pub fn tip_intensities(
         }
         let domain = Domain {
             radius: cells * size,
-            fronts: &fronts,
+            fronts: &solved.fronts,
             rule: RULE,
         };
         match interaction(&integrator, tip, domain, &fields)? {

@@ -104,7 +104,7 @@ impl<'a> CellFunctions<'a> {
     }
 
     /// Visits all functions with their values and gradients at L points ξ (positions x) in a region of the cell.
-    #[inline]
+    #[inline(always)]
     pub fn visit<const L: usize>(
         &self,
         xi: &Points<L>,
@@ -169,7 +169,7 @@ impl<'a> CellFunctions<'a> {
 
     /// Visits the branch functions of a tip, or of all tips, at the nodes of a mask with their values at L points ξ (positions x)
     /// in a region of the cell: on a face the others vanish.
-    #[inline]
+    #[inline(always)]
     pub fn visit_branches<const L: usize>(
         &self,
         (xi, x): (&Points<L>, &Points<L>),
@@ -246,7 +246,7 @@ struct Branches<const L: usize> {
 }
 
 /// ρ = Σ N_i over the nodes of a mask; exactly 1 over all of them.
-#[inline]
+#[inline(always)]
 fn ramp_value<const L: usize>(mask: u8, n: &[[f64; L]]) -> [f64; L] {
     let inside = |i: usize| mask & (1 << i) != 0;
     if (0..n.len()).all(inside) {
@@ -260,7 +260,7 @@ fn ramp_value<const L: usize>(mask: u8, n: &[[f64; L]]) -> [f64; L] {
 }
 
 /// ρ and its gradient.
-#[inline]
+#[inline(always)]
 fn ramp<const L: usize>(mask: u8, n: &[[f64; L]], dn: &[Points<L>]) -> ([f64; L], Points<L>) {
     let inside = |i: usize| mask & (1 << i) != 0;
     let mut slope = [[0.0; L]; 3];

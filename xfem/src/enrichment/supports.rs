@@ -16,8 +16,8 @@ use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
 use crate::geometry::{Point, norm, root, sub, unite};
+use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
-use crate::mesh::{Lengths, Mesh};
 use crate::quadrature::measure;
 
 use super::basis::Region;
@@ -38,13 +38,12 @@ type FacetKey = [u32; 4];
 /// Finds the pieces of the supports of all nodes of divided cells. `beside`: as in [`Enrichment::new`](super::Enrichment::new).
 pub fn support_pieces(
     mesh: &Mesh,
-    lengths: &Lengths,
     cracks: &[Crack],
     trace: &Trace,
     partitions: &BTreeMap<usize, Partition>,
     beside: &BTreeMap<u32, Point>,
 ) -> Pieces {
-    let near = Neighbours::new(mesh, lengths);
+    let near = Neighbours::new(mesh);
     let touched = mesh.nodes_of(partitions.keys().copied());
     let mut facets: BTreeMap<FacetKey, Vec<usize>> = BTreeMap::new();
     for cell in near.cells_around(&touched) {

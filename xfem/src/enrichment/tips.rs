@@ -76,7 +76,7 @@ impl Tips {
         let mut search = Search {
             mesh,
             lengths,
-            near: Neighbours::new(mesh, lengths),
+            near: Neighbours::new(mesh),
             arms,
             trace,
             kept: trace
@@ -129,7 +129,7 @@ impl Tips {
     }
 
     /// Divides the cells of a solid.
-    pub fn solid(mesh: &Mesh, lengths: &Lengths, arms: &[Crack]) -> Self {
+    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Self {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, crack) in arms.iter().enumerate() {
@@ -195,7 +195,7 @@ impl Tips {
             };
             let zone = match radius {
                 Some(radius) => {
-                    let near = near.get_or_insert_with(|| Neighbours::new(mesh, lengths));
+                    let near = near.get_or_insert_with(|| Neighbours::new(mesh));
                     let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }

@@ -1,7 +1,7 @@
 //! Branch functions of the coordinates ahead of a tip and across its crack: of one tip, of both ends of a crack.
 
 /// √r times sin θ/2, cos θ/2, sin θ/2 sin θ, cos θ/2 sin θ. Without branches, so that several points go at once.
-#[inline]
+#[inline(always)]
 pub(super) fn root_values(psi: f64, phi: f64) -> [f64; 4] {
     let r = (psi * psi + phi * phi).sqrt();
     let ([sin, _], [s, c]) = (polar(psi, phi, r), half_polar(psi, phi, r));
@@ -9,7 +9,7 @@ pub(super) fn root_values(psi: f64, phi: f64) -> [f64; 4] {
 }
 
 /// The same with their derivatives ahead and across; these are 0 at the tip, for want of a limit.
-#[inline]
+#[inline(always)]
 pub(super) fn root_functions(psi: f64, phi: f64) -> ([f64; 4], [[f64; 2]; 4]) {
     let r = (psi * psi + phi * phi).sqrt();
     let root = r.sqrt();
@@ -32,7 +32,7 @@ pub(super) fn root_functions(psi: f64, phi: f64) -> ([f64; 4], [[f64; 2]; 4]) {
 }
 
 /// sin θ and cos θ of a point at distance r from the tip; those of θ = 0 at the tip itself.
-#[inline]
+#[inline(always)]
 fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
     let (sin, cos) = (phi / r, psi / r);
     if r > 0.0 { [sin, cos] } else { [0.0, 1.0] }
@@ -40,7 +40,7 @@ fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
 
 /// sin θ/2 and cos θ/2, −π <= θ <= π, the larger of both from (1 ± cos θ)/2, which cancels nothing, and the other from
 /// their product sin θ/2.
-#[inline]
+#[inline(always)]
 fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
     let larger = (0.5 * (1.0 + psi.abs() / r)).sqrt();
     let other = 0.5 * phi / (r * larger);

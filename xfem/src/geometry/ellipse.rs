@@ -60,7 +60,7 @@ impl Ellipse {
     }
 
     /// Distances of L points, directions ahead, and the nearest points in the plane's coordinates.
-    #[inline]
+    #[inline(always)]
     pub fn nearests<const L: usize>(&self, x: &Points<L>) -> ([f64; L], Points<L>, [[f64; L]; 2]) {
         let second = cross(&self.normal, &self.axis);
         let mut flat = [[0.0; L]; 2];

@@ -234,7 +234,7 @@ impl TipFrame {
     }
 
     /// ψ, φ, ∇ψ and ∇φ of L points, φ on the face of the crack that `side` says.
-    #[inline]
+    #[inline(always)]
     fn placed<const L: usize>(
         &self,
         x: &Points<L>,
@@ -286,7 +286,7 @@ impl TipFrame {
     }
 
     /// Branch functions at L points on one side, by function and point.
-    #[inline]
+    #[inline(always)]
     pub fn branch_values<const L: usize>(
         &self,
         x: &Points<L>,
@@ -305,7 +305,7 @@ impl TipFrame {
     }
 
     /// The same with their gradients, by function, direction and point.
-    #[inline]
+    #[inline(always)]
     pub fn branches<const L: usize>(
         &self,
         x: &Points<L>,

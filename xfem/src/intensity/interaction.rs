@@ -21,6 +21,7 @@ use rayon::prelude::*;
 use crate::contact::surface_point::SurfacePoint;
 use crate::cut::placement::{cells_at, reference_position};
 use crate::fields::sampling::{ComparisonPoint, comparison_points};
+use crate::geometry::boxes::around;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
@@ -86,24 +87,27 @@ pub fn interaction(
     fields: &Fields<'_>,
 ) -> Result<Result<[f64; 2], Obstacle>, CellError> {
     let CellIntegrator { mesh, lame, .. } = *integrator;
-    let inside: Vec<bool> = mesh
-        .nodes
-        .iter()
-        .map(|x| norm(&sub(x, &tip.position)) <= domain.radius)
-        .collect();
-    let count = |cell: usize| {
-        let nodes = mesh.cell(cell).iter();
-        nodes.filter(|&&node| inside[node as usize]).count()
+    let inside = |node: u32| {
+        let x = &mesh.nodes[node as usize];
+        norm(&sub(x, &tip.position)) <= domain.radius
     };
-    let cells: Vec<usize> = (0..mesh.cell_count()).filter(|&c| count(c) > 0).collect();
+    let count = |cell: usize| mesh.cell(cell).iter().filter(|&&n| inside(n)).count();
+    let reached = around([&tip.position], domain.radius);
+    let mut cells = mesh.surroundings().meeting(&reached);
+    cells.retain(|&cell| count(cell) > 0);
+    // Those that the rules of these cells see.
+    let sizes = cells.iter().map(|&cell| mesh.map(cell).diagonal());
+    let reach = domain.radius + 3.0 * sizes.fold(0.0, f64::max);
+    let near = |front: &&TipFrame| front.distance(&tip.position) <= reach;
+    let fronts: Vec<TipFrame> = domain.fronts.iter().filter(near).cloned().collect();
     let mut at_tip = cells_at(mesh, &tip.position).into_iter();
     if at_tip.any(|cell| count(cell) < mesh.kind.nodes()) {
         return Ok(Err(Obstacle::Cells));
     }
-    if let Some(obstacle) = obstacle(integrator, tip, domain.fronts, &inside, &cells) {
+    if let Some(obstacle) = obstacle(integrator, tip, &fronts, &inside, &cells) {
         return Ok(Err(obstacle));
     }
-    let own_faces = fields.faces.iter().filter(|(p, _)| count(p.cell) > 0);
+    let own_faces = (fields.faces.iter()).filter(|(p, _)| cells.binary_search(&p.cell).is_ok());
     let bends = |(p, _): &(&SurfacePoint, Point)| {
         let away = sub(&p.x, &tip.position);
         dot(&away, &tip.normal).abs() > STRAIGHT * norm(&away)
@@ -114,7 +118,7 @@ pub fn interaction(
     let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
     let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
         let ring = count(cell) < mesh.kind.nodes();
-        let points = comparison_points(integrator, cell, domain.fronts, domain.rule)?;
+        let points = comparison_points(integrator, cell, &fronts, domain.rule)?;
         let gradients = if ring {
             (fields.gradients)(cell, &points)?
         } else {
@@ -164,12 +168,12 @@ fn obstacle(
     integrator: &CellIntegrator<'_>,
     tip: &TipFrame,
     fronts: &[TipFrame],
-    inside: &[bool],
+    inside: &dyn Fn(u32) -> bool,
     cells: &[usize],
 ) -> Option<Obstacle> {
     let mesh = integrator.mesh;
     let outline = mesh.sides.keys().flat_map(|side| mesh.side_nodes(side));
-    if outline.into_iter().any(|node| inside[node]) {
+    if outline.into_iter().any(|node| inside(node as u32)) {
         return Some(Obstacle::Side);
     }
     cells.iter().find_map(|&cell| {
@@ -191,12 +195,12 @@ fn obstacle(
 }
 
 /// q and ∇q [1/m].
-fn weight(mesh: &Mesh, cell: usize, inside: &[bool], xi: &Point) -> (f64, Point) {
+fn weight(mesh: &Mesh, cell: usize, inside: &dyn Fn(u32) -> bool, xi: &Point) -> (f64, Point) {
     let n = mesh.kind.shape(xi);
     let (dn, _) = mesh.map(cell).gradients(xi);
     let (mut q, mut dq) = (0.0, [0.0; 3]);
     for (i, &node) in mesh.cell(cell).iter().enumerate() {
-        if inside[node as usize] {
+        if inside(node) {
             q += n[i];
             dq = add_scaled(&dq, 1.0, &dn[i]);
         }

@@ -166,7 +166,7 @@ impl CellKind {
     }
 
     /// N_i(ξ) at L points, by node.
-    #[inline]
+    #[inline(always)]
     pub fn shapes<const L: usize>(self, xi: &Points<L>) -> [[f64; L]; MOST_NODES] {
         let mut n = [[0.0; L]; MOST_NODES];
         for (n, c) in n.iter_mut().zip(&CORNERS).take(self.nodes()) {
@@ -189,7 +189,7 @@ impl CellKind {
     }
 
     /// ∂N_i/∂ξ_a at L points, by node and direction.
-    #[inline]
+    #[inline(always)]
     fn reference_slopes<const L: usize>(self, xi: &Points<L>) -> [Points<L>; MOST_NODES] {
         let mut slopes = [[[0.0; L]; 3]; MOST_NODES];
         for (g, c) in slopes.iter_mut().zip(&CORNERS).take(self.nodes()) {
@@ -283,7 +283,7 @@ impl CellMap {
     }
 
     /// Gradients ∂N_i/∂x [1/m] at L points ξ, by node and direction; `inverse`: ∂ξ/∂x if it is the same everywhere.
-    #[inline]
+    #[inline(always)]
     pub fn slopes<const L: usize>(
         &self,
         xi: &Points<L>,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Lengths, Mesh};
+use super::Mesh;
 use crate::geometry::boxes::Extents;
 
 /// The cells of every node, ascending.
@@ -12,12 +12,11 @@ pub struct Neighbours<'a> {
     /// Where the cells of every node start.
     ptr: Vec<usize>,
     cells: Vec<usize>,
-    lengths: &'a Lengths,
 }
 
 impl<'a> Neighbours<'a> {
     /// Gathers them.
-    pub fn new(mesh: &'a Mesh, lengths: &'a Lengths) -> Self {
+    pub fn new(mesh: &'a Mesh) -> Self {
         let mut ptr = vec![0; mesh.nodes.len() + 1];
         let nodes = |cell: usize| mesh.cell(cell).iter().map(|&n| n as usize);
         for node in (0..mesh.cell_count()).flat_map(nodes) {
@@ -34,12 +33,7 @@ impl<'a> Neighbours<'a> {
                 next[node] += 1;
             }
         }
-        Neighbours {
-            mesh,
-            ptr,
-            cells,
-            lengths,
-        }
+        Neighbours { mesh, ptr, cells }
     }
 
     /// Cells with one of some nodes.
@@ -50,7 +44,8 @@ impl<'a> Neighbours<'a> {
 
     /// All nodes in a box, and some beside it.
     pub fn nodes_in(&self, extents: &Extents) -> BTreeSet<u32> {
-        self.mesh.nodes_of(self.lengths.cells.meeting(extents))
+        self.mesh
+            .nodes_of(self.mesh.surroundings().meeting(extents))
     }
 
     /// Nodes of all cells with one of some nodes.

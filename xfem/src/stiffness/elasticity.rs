@@ -85,7 +85,7 @@ impl Gram {
     }
 
     /// Gradients of the k-th function at the next L <= [`LANES`] points; [`Gram::end`] adds the points, when all are put.
-    #[inline]
+    #[inline(always)]
     pub fn put<const L: usize>(&mut self, k: usize, weights: &[f64; L], g: &Points<L>) {
         for (a, g) in g.iter().enumerate().take(self.dim) {
             let start = (k * self.dim + a) * Self::STRIDE + self.count;
@@ -100,7 +100,7 @@ impl Gram {
     }
 
     /// Adds the points whose gradients are put.
-    #[inline]
+    #[inline(always)]
     pub fn end<const L: usize>(&mut self, weights: &[f64; L]) {
         self.measure += weights.iter().sum::<f64>();
         self.count += L;

@@ -25,6 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use crate::cut::crack::{End, Geometry, Tip};
+use crate::cut::placement::cells_at;
 use crate::cut::trace::TracedTip;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::meets;
@@ -69,7 +70,7 @@ impl Search<'_> {
     /// Adds the functions of the corners that have room for them.
     pub(super) fn add_corners(&self, tips: &mut Tips) {
         for (x, ends) in self.meetings() {
-            let cells = self.lengths.cells_at(self.mesh, &x);
+            let cells = cells_at(self.mesh, &x);
             let nodes = self.mesh.nodes_of(cells.iter().copied());
             let sizes = nodes.iter();
             let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
