@@ -5,6 +5,7 @@ pub(crate) mod delassus;
 pub(crate) mod dense;
 pub(crate) mod factor;
 pub(crate) mod floating;
+pub(crate) mod gmres;
 pub(crate) mod loads;
 pub mod matrix;
 pub(crate) mod multifrontal;

@@ -3,11 +3,9 @@
 //! The scaling keeps the condition number bounded however small a cut cell is. Rows and columns of pinned unknowns
 //! (one per rigid motion) are replaced by those of the unit matrix; what is solved for are balanced forces, see [`Balance`].
 
-use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::sparse::{CreationError, FaerError};
 use faer::{Mat, MatRef};
 
 use crate::algebra::dense::norm;
@@ -77,7 +75,7 @@ impl Elimination {
 /// The factor with everything needed to solve.
 pub(crate) struct Factor {
     cholesky: Cholesky,
-    pub ordering: Ordering,
+    pub ordering: Arc<Ordering>,
     /// D by unknown.
     pub scale: Vec<f64>,
     /// Pinned unknowns.
@@ -96,30 +94,45 @@ impl Factor {
         pins: Vec<usize>,
         balance: Arc<Balance>,
     ) -> Result<Self, MethodError> {
-        let n = k.size();
         let clock = Instant::now();
+        let analysis = elimination.analysis(k, &balance);
+        drop(elimination);
+        let analysis_s = clock.elapsed().as_secs_f64();
+        let factor = Self::as_planned(k, &analysis, pins, balance)?;
+        Ok(Self {
+            analysis_s,
+            ..factor
+        })
+    }
+
+    /// Of a K of the pattern that was analysed.
+    pub fn as_planned(
+        k: &SquareMatrix,
+        analysis: &Analysis,
+        pins: Vec<usize>,
+        balance: Arc<Balance>,
+    ) -> Result<Self, MethodError> {
         let Analysis {
             ordering,
             tree,
             entries,
-        } = elimination.analysis(k, &balance);
-        drop(elimination);
-        let analysis_s = clock.elapsed().as_secs_f64();
-
+        } = analysis;
+        let n = k.size();
         let clock = Instant::now();
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / k.diagonal(j).sqrt()).collect();
-        let values = scaled_values(k, &scale, &pins, &ordering, &entries.begin);
+        let values = scaled_values(k, &scale, &pins, ordering, &entries.begin);
         let not_positive = |column: usize| MethodError::NotPositiveDefinite {
             unknown: ordering.forward[column],
             size: n,
         };
-        let cholesky = Cholesky::new(tree, &entries, &values).map_err(|failure| match failure {
-            Failure::NotPositive(column) => not_positive(column),
-            // The largest array of a run: where it does not fit, the run says so.
-            Failure::OutOfMemory => MethodError::OutOfMemory {
-                what: "sparse factorisation",
-            },
-        })?;
+        let cholesky =
+            Cholesky::new(tree.clone(), entries, &values).map_err(|failure| match failure {
+                Failure::NotPositive(column) => not_positive(column),
+                // The largest array of a run: where it does not fit, the run says so.
+                Failure::OutOfMemory => MethodError::OutOfMemory {
+                    what: "sparse factorisation",
+                },
+            })?;
         let factorisation_s = clock.elapsed().as_secs_f64();
         // A singular K can pass by luck, with pivots that are rounding.
         if let Some(column) = cholesky.pivot_below(SMALLEST_PIVOT) {
@@ -127,11 +140,11 @@ impl Factor {
         }
         Ok(Self {
             cholesky,
-            ordering,
+            ordering: ordering.clone(),
             scale,
             pins,
             balance,
-            analysis_s,
+            analysis_s: 0.0,
             factorisation_s,
         })
     }
@@ -178,7 +191,7 @@ impl Factor {
     }
 
     /// x := D (L Lᵀ)⁻¹ D x, 0 for pinned unknowns.
-    fn solve_scaled(&self, x: &mut [f64], work: &mut [f64]) {
+    pub fn solve_scaled(&self, x: &mut [f64], work: &mut [f64]) {
         self.scale_and_permute(x, work);
         self.cholesky.solve(work);
         self.permute_back_and_scale(work, x);
@@ -257,15 +270,7 @@ fn scaled_values(
     values
 }
 
-/// An error of a sparse kernel.
-pub(crate) fn sparse(what: &'static str, error: impl Into<CreationError> + Debug) -> MethodError {
-    let reason = format!("{error:?}");
-    match error.into() {
-        CreationError::Generic(FaerError::OutOfMemory) => MethodError::OutOfMemory { what },
-        _ => kernel(what, reason),
-    }
-}
-
+/// An error of a kernel.
 pub(crate) fn kernel(what: &'static str, reason: String) -> MethodError {
     MethodError::Kernel { what, reason }
 }

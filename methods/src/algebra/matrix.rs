@@ -94,6 +94,10 @@ impl SquareMatrix {
         &self.values
     }
 
+    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
     /// Diagonal entry of column `j`.
     pub fn diagonal(&self, j: usize) -> f64 {
         if self.symmetric {

@@ -11,7 +11,7 @@ mod solve;
 mod tests;
 mod tree;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::MatRef;
 
@@ -23,7 +23,7 @@ use tree::{AssemblyTree, NONE};
 
 /// The factor.
 pub(crate) struct Cholesky {
-    pub tree: AssemblyTree,
+    pub tree: Arc<AssemblyTree>,
     /// The columns of every supernode, by strips: see [`Trapezoid`](crate::algebra::strips::Trapezoid).
     values: Vec<f64>,
 }
@@ -33,7 +33,11 @@ impl Cholesky {
     ///
     /// # Errors
     /// The same whatever the number of threads: no memory, else the first column without a positive pivot.
-    pub fn new(tree: AssemblyTree, entries: &Entries, values: &[f64]) -> Result<Self, Failure> {
+    pub fn new(
+        tree: Arc<AssemblyTree>,
+        entries: &Entries,
+        values: &[f64],
+    ) -> Result<Self, Failure> {
         let nodes = &tree.nodes;
         let mut l = lazy_zeros(tree.entries())?;
         let panels = parts(&mut l, nodes.iter().map(|node| node.entries.len()));

@@ -20,6 +20,11 @@ pub(crate) trait Stiffness: Send + Sync {
     /// K itself, where it is known.
     fn matrix(&self) -> Option<&SquareMatrix>;
 
+    /// The factor of K, computed on first use.
+    fn factor(&self) -> Result<&Factor, MethodError> {
+        Err(MethodError::NoStiffness)
+    }
+
     /// Factors K unless that is done.
     fn factorise(&self) -> Result<(), MethodError>;
 
@@ -105,19 +110,6 @@ impl SparseStiffness {
             factor: OnceLock::new(),
         })
     }
-
-    /// The factor, computed on first use.
-    pub fn factor(&self) -> Result<&Factor, MethodError> {
-        let build = || {
-            let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
-            Factor::new(&self.k, std::mem::take(&mut elimination), pins, balance)
-        };
-        self.factor
-            .get_or_init(build)
-            .as_ref()
-            .map_err(Clone::clone)
-    }
 }
 
 impl Stiffness for SparseStiffness {
@@ -127,6 +119,18 @@ impl Stiffness for SparseStiffness {
 
     fn matrix(&self) -> Option<&SquareMatrix> {
         Some(&self.k)
+    }
+
+    fn factor(&self) -> Result<&Factor, MethodError> {
+        let build = || {
+            let (pins, balance) = (self.pins.clone(), self.balance.clone());
+            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
+            Factor::new(&self.k, std::mem::take(&mut elimination), pins, balance)
+        };
+        self.factor
+            .get_or_init(build)
+            .as_ref()
+            .map_err(Clone::clone)
     }
 
     fn factorise(&self) -> Result<(), MethodError> {

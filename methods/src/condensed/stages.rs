@@ -163,14 +163,11 @@ fn alternate(problem: &mut ContactProblem<'_>, sweeps: usize) -> Result<Option<P
         }
         return Ok(Some(pair));
     }
-    let body = WholeBody::explicit(problem.increment.system)?;
-    let Some(stage) = body.factorise(problem, &stage_rows(k0, problem, &pair, &pair.p))? else {
-        return Ok(None);
-    };
+    let mut body = WholeBody::new(problem.increment.system)?;
     for _ in 0..sweeps {
         local_stage(k0, problem, &pair, &mut branches, &mut target);
         let mut rows = stage_rows(k0, problem, &pair, &target);
-        let Some(step) = stage.step(problem, &pair.p, &mut rows) else {
+        let Some(step) = body.step(problem, &pair.p, &mut rows)? else {
             return Ok(None);
         };
         let (p, beta) = (

@@ -1,237 +1,149 @@
-//! Sparse LU of the whole body with its contact, for the monolithic variants.
+//! The linear problem of a Newton step on all unknowns of the body: W is not formed, memory and work are those of a few factors of K.
 //! ```text
-//! saddle:    [ K   −Bᵀ ] [δu]   [ 0]        explicit, A = I:   (K + Bᵀ C B) δu = −Bᵀ h
-//!            [ C B   A ] [δP] = [−h]                           δP = −h − C B δu
+//! A δP + C δv = −h at every point,   K δu = Bᵀ δP,   δv = B δu
 //! ```
-//! All contact rows stay in the matrix whatever the points do, so that the pattern is analysed once. Displacements are
-//! scaled by K_jj^(−1/2), forces by √ρ.
+//! By generalised minimal residuals in the rows, each vector preconditioned from the right by a body whose points stand on springs
+//! that stand for the law: symmetric and positive definite, so that its factor is that of K a little fuller, in one order that is
+//! analysed once.
+//! ```text
+//! L = A + C/κ,   S = the symmetric part of L⁻¹C, normal and tangential alone, without what is negative
+//! (K + Bᵀ S B) δu = Bᵀ L⁻¹ ρ,   δP = L⁻¹ ρ − S B δu        so K δu = Bᵀ δP whatever S
+//! ```
+//! A point that sticks stands on κ, far above its own stiffness, one that slips on κ along the normal alone, an open one on
+//! nothing; what friction couples is left to the iteration. As long as few points change S, its factor serves again.
+//!
+//! Springs of κ leave K δu = Bᵀ δP to rounding times κ: what δv = W δP, one solve with K, leaves of the rows is solved for again.
+//!
+//! A body that floats is pinned by springs, too; that they carry nothing is one equation more each.
 
 #![allow(non_snake_case)]
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use faer::MatMut;
-use faer::linalg::solvers::Solve;
-use faer::sparse::FaerError;
-use faer::sparse::linalg::LuError;
-use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::sparse::{Argsort, Pair as Place, SparseColMat, SymbolicSparseColMat};
-
-use crate::algebra::dense::{along, norm};
-use crate::algebra::factor::sparse;
+use crate::algebra::dense::{DenseLu, add, along, larger, minus, norm};
+use crate::algebra::factor::Factor;
+use crate::algebra::floating::Balance;
+use crate::algebra::gmres::gmres;
+use crate::algebra::matrix::SquareMatrix;
+use crate::algebra::multifrontal::Analysis;
 use crate::algebra::rows::RowSet;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::contract::elastic::Elastic;
-use crate::contract::operator::DelassusForm;
 use crate::contract::system::ContactSystem;
 use crate::error::MethodError;
 
-/// Largest |A x − b|/|b| of a solve that counts: a singular matrix leaves more.
-const SOLVED: f64 = 1e-6;
+/// κ as a multiple of a row's stiffness with all else held: the larger, the fewer steps and the more rounding.
+const STIFF: f64 = 1e2;
+/// Residual of a step over its right-hand side, and that of one round of vectors.
+const SOLVED: f64 = 1e-12;
+const ROUND: f64 = 1e-6;
+/// Most rounds, and the residual that is left to rounding where there are no more.
+const ROUNDS: usize = 8;
+const ROUNDING: f64 = 1e-6;
+/// Most vectors of a step; with the factor of other springs, where one of its own may take fewer.
+const MOST: usize = 400;
+const MOST_BORROWED: usize = 8;
 
-/// One entry of the matrix by where its value comes from.
-enum Entry {
-    /// A fixed value: K and −Bᵀ.
-    Fixed(f64),
-    /// Entry (row, column) of A at a point.
-    A(usize, usize, usize),
-    /// Σ_l C[row][l] b_l at a point, with b the scaled coefficients of the point's rows of B at one unknown.
-    CB(usize, usize, [f64; 3]),
-    /// Σ_kl b_k C[k][l] b'_l at a point.
-    Product(usize, [f64; 3], [f64; 3]),
-}
+/// A block of a point.
+type Block = [[f64; 3]; 3];
 
-/// The analysed matrix of one system.
+/// (δP, δv) by row.
+type Step = (Vec<f64>, Vec<f64>);
+
+/// The body of one system.
 pub(crate) struct WholeBody {
     elastic: Arc<Elastic>,
     set: RowSet,
-    explicit: bool,
-    entries: Vec<Entry>,
-    pattern: SymbolicSparseColMat<usize>,
-    argsort: Argsort<usize>,
-    symbolic: SymbolicLu<usize>,
-    /// Scaled rows of B in use, point by point: (unknown, coefficients on the rows of the point).
-    b: Vec<Vec<(usize, [f64; 3])>>,
-    /// First row and number of rows of each point.
-    rows: Vec<(usize, usize)>,
-    sigma: f64,
-    n: usize,
-    m: usize,
+    /// K on the pattern of K + Bᵀ S B, and with springs.
+    plain: Vec<f64>,
+    sprung: SquareMatrix,
+    analysis: Analysis,
+    points: Vec<Point>,
+    /// Pinned unknowns, where their diagonal entries stand, and their springs.
+    pins: Vec<(usize, usize, f64)>,
+    /// S by point, and the factor of its matrix.
+    factored: Option<(Vec<Block>, Factor)>,
+}
+
+/// A contact point in the body.
+struct Point {
+    start: usize,
+    size: usize,
+    /// Unknowns with their coefficients in the rows of the point.
+    b: Vec<(usize, [f64; 3])>,
+    /// Where every pair of them, the first not before the second, stands among the values.
+    places: Vec<usize>,
+    /// κ by row.
+    stiff: [f64; 3],
+}
+
+/// What the rows of a step ask of a point: L⁻¹ and S.
+struct Spring {
+    inverse: Block,
+    s: Block,
 }
 
 impl WholeBody {
-    /// The saddle-point form, for rows of any kind.
-    pub fn saddle(system: &ContactSystem) -> Result<Self, MethodError> {
-        Self::new(system, false)
-    }
-
-    /// The displacement form, for rows that give δP explicitly (A = I).
-    pub fn explicit(system: &ContactSystem) -> Result<Self, MethodError> {
-        Self::new(system, true)
-    }
-
-    fn new(system: &ContactSystem, explicit: bool) -> Result<Self, MethodError> {
-        let rho = system.operator(DelassusForm::Products)?.rho;
+    /// Analyses the body of a system.
+    pub fn new(system: &ContactSystem) -> Result<Self, MethodError> {
         let (elastic, set) = (system.elastic(), system.row_set());
         let K = elastic.stiffness().ok_or(MethodError::NoStiffness)?;
-        let (n, m) = (K.size(), set.len());
-        let scale: Vec<f64> = (0..n).map(|j| 1.0 / K.diagonal(j).sqrt()).collect();
-        let sigma = rho.sqrt();
-        let (mut at, mut entries) = (Vec::new(), Vec::new());
-        let mut push = |row: usize, col: usize, entry: Entry| {
-            at.push(Place { row, col });
-            entries.push(entry);
-        };
-        for j in 0..n {
-            for k in K.col_ptr()[j]..K.col_ptr()[j + 1] {
-                let (i, value) = (K.row_idx()[k], K.values()[k]);
-                let value = value * scale[i] * scale[j];
-                push(i, j, Entry::Fixed(value));
-                if i != j {
-                    push(j, i, Entry::Fixed(value));
-                }
-            }
-        }
-        let (mut b, mut rows) = (Vec::new(), Vec::new());
-        for point in 0..set.points() {
-            let own = set.of(point);
-            rows.push((own.start, own.len()));
-            let mut columns = std::collections::BTreeMap::<usize, [f64; 3]>::new();
+        let factor = elastic.factor()?;
+        let point = |own: std::ops::Range<usize>| {
+            let (mut columns, mut local) = (BTreeMap::<usize, [f64; 3]>::new(), [0.0; 3]);
             for (l, k) in own.clone().enumerate() {
                 for (j, value) in elastic.jump().row(set.source[k]) {
-                    columns.entry(j).or_default()[l] += value * scale[j] * sigma;
+                    columns.entry(j).or_default()[l] += value;
+                    local[l] += value * value / K.diagonal(j);
                 }
             }
-            let columns: Vec<(usize, [f64; 3])> = columns.into_iter().collect();
-            for &(j, coefficients) in &columns {
-                if explicit {
-                    for &(i, others) in &columns {
-                        push(i, j, Entry::Product(point, others, coefficients));
-                    }
-                    continue;
-                }
-                for (l, k) in own.clone().enumerate() {
-                    push(j, n + k, Entry::Fixed(-coefficients[l]));
-                    push(n + k, j, Entry::CB(point, l, coefficients));
-                }
+            Point {
+                start: own.start,
+                size: own.len(),
+                b: columns.into_iter().collect(),
+                places: Vec::new(),
+                stiff: local.map(|local| STIFF / local),
             }
-            if !explicit {
-                for (l, k) in own.clone().enumerate() {
-                    for (c, column) in own.clone().enumerate() {
-                        push(n + k, n + column, Entry::A(point, l, c));
-                    }
-                }
-            }
-            b.push(columns);
+        };
+        let mut points: Vec<Point> = set.iter().map(point).collect();
+        let sprung = widened(K, &points)?;
+        for point in &mut points {
+            let all = point.pairs().map(|(i, j, ..)| {
+                let begin = sprung.col_ptr()[j];
+                begin + sprung.row_idx()[begin..sprung.col_ptr()[j + 1]].partition_point(|&r| r < i)
+            });
+            point.places = all.collect();
         }
-        let size = if explicit { n } else { n + m };
-        let (pattern, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &at)
-            .map_err(|e| sparse("pattern of the monolithic matrix", e))?;
-        let symbolic = SymbolicLu::try_new(pattern.as_ref())
-            .map_err(|e| sparse("symbolic LU of the monolithic matrix", e))?;
+        let order = &factor.ordering.forward;
         Ok(Self {
+            analysis: Analysis::new(&sprung, order, &vec![false; K.size()]),
+            pins: (factor.pins.iter())
+                .map(|&j| (j, sprung.col_ptr()[j], K.diagonal(j)))
+                .collect(),
+            plain: sprung.values().to_vec(),
             elastic: elastic.clone(),
             set: set.clone(),
-            explicit,
-            entries,
-            pattern,
-            argsort,
-            symbolic,
-            b,
-            rows,
-            sigma,
-            n,
-            m,
+            sprung,
+            points,
+            factored: None,
         })
     }
 
-    /// Whether the matrix was analysed for this system.
+    /// Whether it is that of this system.
     pub fn belongs_to(&self, system: &ContactSystem) -> bool {
         Arc::ptr_eq(system.elastic(), &self.elastic) && *system.row_set() == self.set
     }
 
-    /// The step from contact forces P that fulfils the rows, with its jump and amplitudes; `None` if the matrix is singular.
+    /// The step from contact forces P that fulfils the rows, with its jump and amplitudes; `None` if the tangent is singular.
     pub fn step(
-        &self,
+        &mut self,
         problem: &mut ContactProblem<'_>,
         P: &[f64],
         rows: &mut [[PointRow; 3]],
     ) -> Result<Option<Pair>, MethodError> {
-        let factor = self.factorise(problem, rows)?;
-        Ok(factor.and_then(|factor| factor.step(problem, P, rows)))
-    }
-
-    /// Factors the matrix of the coefficients of some rows; `None` if it is singular.
-    pub fn factorise(
-        &self,
-        problem: &mut ContactProblem<'_>,
-        rows: &[[PointRow; 3]],
-    ) -> Result<Option<WholeBodyFactor<'_>>, MethodError> {
-        problem.counters.global_factorisations += 1;
-        let failed = |e: FaerError| sparse("sparse LU of the monolithic matrix", e);
-        // In scaled unknowns C becomes C/ρ: B carries √ρ, and so does P.
-        let rho = self.sigma * self.sigma;
-        let c = |point: usize, k: usize, l: usize| rows[point][k].c[l] / rho;
-        let values: Vec<f64> = (self.entries.iter())
-            .map(|entry| match entry {
-                Entry::Fixed(value) => *value,
-                Entry::A(point, k, l) => rows[*point][*k].a[*l],
-                Entry::CB(point, k, b) => (0..3).map(|l| c(*point, *k, l) * b[l]).sum(),
-                Entry::Product(point, b, d) => (0..3)
-                    .map(|k| b[k] * (0..3).map(|l| c(*point, k, l) * d[l]).sum::<f64>())
-                    .sum(),
-            })
-            .collect();
-        let matrix = SparseColMat::new_from_argsort(self.pattern.clone(), &self.argsort, &values)
-            .map_err(failed)?;
-        match Lu::try_new_with_symbolic(self.symbolic.clone(), matrix.as_ref()) {
-            Ok(lu) => Ok(Some(WholeBodyFactor {
-                body: self,
-                matrix,
-                lu,
-            })),
-            Err(LuError::SymbolicSingular { .. }) => Ok(None),
-            Err(LuError::Generic(e)) => Err(failed(e)),
-        }
-    }
-
-    fn unscaled(&self, rows: &[[PointRow; 3]], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (mut dP, mut dv) = (vec![0.0; self.m], vec![0.0; self.m]);
-        for (point, &(start, len)) in self.rows.iter().enumerate() {
-            for k in 0..len {
-                dv[start + k] =
-                    self.b[point].iter().map(|&(j, b)| b[k] * x[j]).sum::<f64>() / self.sigma;
-            }
-            for k in 0..len {
-                dP[start + k] = if self.explicit {
-                    let row = &rows[point][k];
-                    -row.h - (0..len).map(|l| row.c[l] * dv[start + l]).sum::<f64>()
-                } else {
-                    x[self.n + start + k] * self.sigma
-                };
-            }
-        }
-        (dP, dv)
-    }
-}
-
-/// The matrix of the whole body for the coefficients of some rows, factored.
-pub(crate) struct WholeBodyFactor<'a> {
-    body: &'a WholeBody,
-    matrix: SparseColMat<usize, f64>,
-    lu: Lu<usize, f64>,
-}
-
-impl WholeBodyFactor<'_> {
-    /// The step from contact forces P that fulfils rows of the factored coefficients; `None` if the matrix is singular.
-    pub fn step(
-        &self,
-        problem: &ContactProblem<'_>,
-        P: &[f64],
-        rows: &mut [[PointRow; 3]],
-    ) -> Option<Pair> {
         // Without balance there is no equilibrium to linearise: step from the nearest balanced forces P + Q (c − Qᵀ P).
         let (mut lack, mut response) = (vec![0.0; P.len()], vec![0.0; P.len()]);
         if problem.modes() > 0 {
@@ -245,39 +157,251 @@ impl WholeBodyFactor<'_> {
                 }
             }
         }
-        let (dP, dv) = self.solve(rows)?;
+        let Some((dP, dv)) = self.balanced(problem, rows)? else {
+            return Ok(None);
+        };
         let (p, v) = (along(&dP, 1.0, &lack), along(&dv, 1.0, &response));
         let beta = amplitudes(problem, &p, v.clone());
-        Some(Pair { p, v, beta })
+        Ok(Some(Pair { p, v, beta }))
     }
 
-    /// (δP, δv) by row; `None` if the matrix is singular.
-    fn solve(&self, rows: &[[PointRow; 3]]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let (body, size) = (self.body, self.matrix.ncols());
-        let mut rhs = vec![0.0; size];
-        for (point, &(start, len)) in body.rows.iter().enumerate() {
-            for k in 0..len {
-                let h = rows[point][k].h / body.sigma;
-                if body.explicit {
-                    body.b[point].iter().for_each(|&(j, b)| rhs[j] -= b[k] * h);
-                } else {
-                    rhs[body.n + start + k] = -h;
+    /// (δP, δv) of balanced forces, by the factor at hand or else by its own.
+    fn balanced(
+        &mut self,
+        problem: &mut ContactProblem<'_>,
+        rows: &[[PointRow; 3]],
+    ) -> Result<Option<Step>, MethodError> {
+        let springs = self.points.iter().zip(rows).map(|(p, rows)| p.spring(rows));
+        let Some(springs) = springs.collect::<Option<Vec<Spring>>>() else {
+            return Ok(None);
+        };
+        let same = |s: &[Block]| s.iter().zip(&springs).all(|(s, own)| *s == own.s);
+        if let Some((s, factor)) = &self.factored {
+            let most = if same(s) { MOST } else { MOST_BORROWED };
+            let found = self.solve(problem, (s, factor), &springs, rows, most);
+            if found.is_some() || most == MOST {
+                return Ok(found);
+            }
+        }
+        problem.counters.global_factorisations += 1;
+        // Freed before another is made.
+        self.factored = None;
+        let s: Vec<Block> = springs.iter().map(|spring| spring.s).collect();
+        let Some(factor) = self.factorise(&s)? else {
+            return Ok(None);
+        };
+        let found = self.solve(problem, (&s, &factor), &springs, rows, MOST);
+        self.factored = Some((s, factor));
+        Ok(found)
+    }
+
+    /// The factor of K + Bᵀ S B; `None` if rounding has made it indefinite.
+    fn factorise(&mut self, s: &[Block]) -> Result<Option<Factor>, MethodError> {
+        let values = self.sprung.values_mut();
+        values.copy_from_slice(&self.plain);
+        for (point, s) in self.points.iter().zip(s) {
+            for (&place, (_, _, b, d)) in point.places.iter().zip(point.pairs()) {
+                let sum = (0..3).map(|k| b[k] * (0..3).map(|l| s[k][l] * d[l]).sum::<f64>());
+                values[place] += sum.sum::<f64>();
+            }
+        }
+        for &(_, place, spring) in &self.pins {
+            values[place] += spring;
+        }
+        let held = Arc::new(Balance::new(&self.sprung, &[], &[]));
+        match Factor::as_planned(&self.sprung, &self.analysis, Vec::new(), held) {
+            Ok(factor) => Ok(Some(factor)),
+            Err(MethodError::NotPositiveDefinite { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// (δP, δv) on a factor; `None` if `most` vectors a round do not suffice.
+    fn solve(
+        &self,
+        problem: &ContactProblem<'_>,
+        on: (&[Block], &Factor),
+        springs: &[Spring],
+        rows: &[[PointRow; 3]],
+        most: usize,
+    ) -> Option<Step> {
+        let m = self.set.len();
+        // With what the pins carry behind the forces.
+        let (mut P, mut v) = (vec![0.0; m + self.pins.len()], vec![0.0; m]);
+        let (mut last, mut size) = (f64::INFINITY, 0.0);
+        for _ in 0..ROUNDS {
+            let mut left: Vec<f64> = P.iter().map(|p| -p).collect();
+            for (point, rows) in self.points.iter().zip(rows) {
+                let own = point.start..point.start + point.size;
+                let image = of_rows(rows, &P[own.clone()], &v[own.clone()]);
+                (0..point.size).for_each(|k| left[own.start + k] = -rows[k].h - image[k]);
+            }
+            let found = norm(&left);
+            size = larger(size, found);
+            if found <= SOLVED * size || found > 0.5 * last {
+                P.truncate(m);
+                return (found <= ROUNDING * size).then_some((P, v));
+            }
+            last = found;
+            let (dP, dv) = self.round(&left, on, springs, rows, most)?;
+            add(1.0, &dP, &mut P);
+            add(1.0, &dv, &mut v);
+            v = followed(problem, &P[..m], &v);
+        }
+        None
+    }
+
+    /// (δP, δv) of one round of vectors, and what the pins carry.
+    fn round(
+        &self,
+        left: &[f64],
+        (s, factor): (&[Block], &Factor),
+        springs: &[Spring],
+        rows: &[[PointRow; 3]],
+        most: usize,
+    ) -> Option<Step> {
+        let (mut forces, mut jumps) = (Vec::new(), Vec::new());
+        let mut work = vec![0.0; self.sprung.size()];
+        let y = gmres(left, ROUND, most, |residual| {
+            let mut dP = residual.to_vec();
+            let mut du = vec![0.0; self.sprung.size()];
+            for (point, spring) in self.points.iter().zip(springs) {
+                let own = times(&spring.inverse, &residual[point.start..][..point.size]);
+                dP[point.start..][..point.size].copy_from_slice(&own[..point.size]);
+                for &(j, b) in &point.b {
+                    du[j] += (0..3).map(|k| b[k] * own[k]).sum::<f64>();
                 }
             }
-        }
-        let mut x = rhs.clone();
-        self.lu
-            .solve_in_place(MatMut::from_column_major_slice_mut(&mut x, size, 1));
-        let mut left = rhs.clone();
-        for j in 0..size {
-            let (rows, values) = (self.matrix.row_idx_of_col_raw(j), self.matrix.val_of_col(j));
-            for (&i, value) in rows.iter().zip(values) {
-                left[i] -= value * x[j];
+            let pinned = self.pins.iter().zip(&residual[self.set.len()..]);
+            pinned.for_each(|(pin, force)| du[pin.0] += force);
+            factor.solve_scaled(&mut du, &mut work);
+            let (mut image, mut dv) = (vec![0.0; left.len()], vec![0.0; self.set.len()]);
+            for ((point, s), rows) in self.points.iter().zip(s).zip(rows) {
+                let own = point.start..point.start + point.size;
+                let v = (point.b.iter()).fold([0.0; 3], |v, &(j, b)| {
+                    [0, 1, 2].map(|k| v[k] + b[k] * du[j])
+                });
+                dv[own.clone()].copy_from_slice(&v[..point.size]);
+                let pushed = times(s, &v[..point.size]);
+                let P = &mut dP[own.clone()];
+                P.iter_mut().zip(pushed).for_each(|(P, s)| *P -= s);
+                image[own].copy_from_slice(&of_rows(rows, P, &v)[..point.size]);
             }
-        }
-        let solved = norm(&left) <= SOLVED * norm(&rhs) && x.iter().all(|x| x.is_finite());
-        solved.then(|| body.unscaled(rows, &x))
+            for (k, &(j, _, spring)) in self.pins.iter().enumerate() {
+                let k = self.set.len() + k;
+                dP[k] -= spring * du[j];
+                image[k] = dP[k];
+            }
+            forces.push(dP);
+            jumps.push(dv);
+            Some(image)
+        })?;
+        let sum = |vectors: &[Vec<f64>]| {
+            let mut sum = vec![0.0; vectors.first().map_or(0, Vec::len)];
+            let pairs = y.iter().zip(vectors);
+            pairs.for_each(|(y, vector)| add(*y, vector, &mut sum));
+            sum
+        };
+        Some((sum(&forces), sum(&jumps)))
     }
+}
+
+impl Point {
+    /// Pairs of unknowns, the first not before the second, with their coefficients.
+    fn pairs(&self) -> impl Iterator<Item = (usize, usize, [f64; 3], [f64; 3])> + '_ {
+        let b = &self.b;
+        (b.iter().enumerate())
+            .flat_map(move |(k, &(j, d))| b[k..].iter().map(move |&(i, b)| (i, j, b, d)))
+    }
+
+    /// L⁻¹ and S; `None` where L is singular.
+    fn spring(&self, rows: &[PointRow; 3]) -> Option<Spring> {
+        let n = self.size;
+        let l = faer::Mat::from_fn(n, n, |k, l| rows[k].a[l] + rows[k].c[l] / self.stiff[l]);
+        let lu = DenseLu::new(&l)?;
+        let (mut inverse, mut d) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        for l in 0..n {
+            let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == l))).collect();
+            let column: Vec<f64> = (0..n).map(|k| rows[k].c[l]).collect();
+            let (unit, column) = (lu.solve(&unit)?, lu.solve(&column)?);
+            (0..n).for_each(|k| (inverse[k][l], d[k][l]) = (unit[k], column[k]));
+        }
+        Some(Spring {
+            inverse,
+            s: positive(d),
+        })
+    }
+}
+
+/// The symmetric part of a block, normal and tangential alone, without negative eigenvalues.
+fn positive(d: Block) -> Block {
+    let (a, b, c) = (d[1][1], 0.5 * (d[1][2] + d[2][1]), d[2][2]);
+    let (mean, half) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+    // By the projectors on both eigenvectors.
+    let [low, high] = [mean - half, mean + half].map(|e| e.max(0.0));
+    let (sum, turn) = (
+        0.5 * (low + high),
+        if half > 0.0 {
+            0.5 * (high - low) / half
+        } else {
+            0.0
+        },
+    );
+    let [tilt, shear] = [0.5 * (a - c) * turn, b * turn];
+    [
+        [d[0][0].max(0.0), 0.0, 0.0],
+        [0.0, sum + tilt, shear],
+        [0.0, shear, sum - tilt],
+    ]
+}
+
+/// A P + C v of the rows of a point.
+fn of_rows(rows: &[PointRow; 3], P: &[f64], v: &[f64]) -> [f64; 3] {
+    let sum = |row: &PointRow| {
+        let pairs = P.iter().zip(v).enumerate();
+        pairs.map(|(l, (P, v))| row.a[l] * P + row.c[l] * v).sum()
+    };
+    [0, 1, 2].map(|k| sum(&rows[k]))
+}
+
+fn times(block: &Block, x: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|k| block[k].iter().zip(x).map(|(b, x)| b * x).sum())
+}
+
+/// K with room for what springs at the points couple.
+fn widened(K: &SquareMatrix, points: &[Point]) -> Result<SquareMatrix, MethodError> {
+    let pairs = points.iter().flat_map(Point::pairs);
+    let mut coupled: Vec<(usize, usize)> = pairs.map(|(i, j, ..)| (j, i)).collect();
+    coupled.sort_unstable();
+    coupled.dedup();
+    let mut more = coupled.into_iter().peekable();
+    let (mut begin, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+    for j in 0..K.size() {
+        for (i, value) in K.column(j) {
+            while let Some((_, new)) = more.next_if(|own| *own < (j, i)) {
+                rows.push(new);
+                values.push(0.0);
+            }
+            more.next_if(|own| *own == (j, i));
+            rows.push(i);
+            values.push(value);
+        }
+        while let Some((_, new)) = more.next_if(|own| own.0 == j) {
+            rows.push(new);
+            values.push(0.0);
+        }
+        begin.push(rows.len());
+    }
+    SquareMatrix::symmetric(K.size(), begin, rows, values)
+}
+
+/// W δP + Q δβ with the rigid motion of what is held to be δv.
+fn followed(problem: &ContactProblem<'_>, dP: &[f64], dv: &[f64]) -> Vec<f64> {
+    let mut v = vec![0.0; dP.len()];
+    problem.operator.w.apply_add(dP, &mut v);
+    let modes = &problem.operator.modes;
+    modes.add(&modes.components(&minus(dv, &v)), &mut v);
+    v
 }
 
 /// δβ = Qᵀ (δv − W δP).

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::algebra::condensation::Tractions;
 use crate::algebra::delassus::Delassus;
-use crate::algebra::factor::Elimination;
+use crate::algebra::factor::{Elimination, Factor};
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::loads::Loads;
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
@@ -267,6 +267,11 @@ impl Elastic {
             traction_s: tractions.map_or(0.0, |t| t.1),
             on_body_s: 1e-9 * self.on_body_ns.load(Relaxed) as f64,
         }
+    }
+
+    /// The factor of K, computed on first use.
+    pub(crate) fn factor(&self) -> Result<&Factor, MethodError> {
+        self.stiffness.factor()
     }
 
     /// Factors K unless that is done.

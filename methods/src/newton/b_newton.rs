@@ -24,8 +24,8 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
-//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows, as
-//! papers usually run the method; the iterates are the same.
+//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns of the body, as papers
+//! usually run the method; the iterates are the same.
 //!
 //! # Guarantees
 //! Full steps are tried first; a non-monotone line search on the energy-scaled merit Σ H²/r steps in only after a rise

@@ -24,8 +24,8 @@
 //! map bounds that. The paper's third method, the implicit return map, is Uzawa's: `augmented-lagrangian`.
 //!
 //! # Options
-//! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point, the paper's c. `max_iterations`. `monolithic`: 1 solves each step on
-//! all unknowns with a sparse LU of K bordered by the contact rows. `return_map`: 0 never (the paper's GNM), 1 before every
+//! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point, the paper's c. `max_iterations`. `monolithic`: 1 solves each step on all unknowns
+//! of the body. `return_map`: 0 never (the paper's GNM), 1 before every
 //! step that follows one without progress, 2 before every step but the first (GNM-RM).
 //!
 //! # Guarantees

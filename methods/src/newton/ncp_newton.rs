@@ -21,7 +21,7 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. `max_iterations`. `monolithic`: 1 solves each step on all unknowns
-//! with a sparse LU of K bordered by the contact rows. ε is a tenth of what is violated, natural map times reference force per point, and
+//! of the body. ε is a tenth of what is violated, natural map times reference force per point, and
 //! never grows; |d| is smoothed by ε/r_t in the derivative alone.
 //!
 //! # Guarantees

@@ -20,8 +20,8 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
-//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows,
-//! as papers usually run the method; the iterates are the same.
+//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns of the body, as papers
+//! usually run the method; the iterates are the same.
 //!
 //! # Guarantees
 //! Locally quadratic at points where no state changes; in 2D and without friction the last linear problem is the

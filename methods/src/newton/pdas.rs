@@ -28,8 +28,8 @@
 //!
 //! # Options
 //! `r`: r_n = r/W_nn and r_t = r/mean(W_tt) per point. Safe from 1e-3 to 1e3; the limit does not depend on it.
-//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns with a sparse LU of K bordered by the contact rows;
-//! the iterates are the same.
+//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns of the body; the iterates
+//! are the same.
 //!
 //! # Guarantees
 //! Without friction, if W⁻¹ is an M-matrix: finite termination, from any start, and monotone from the second step on

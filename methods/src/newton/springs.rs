@@ -21,22 +21,19 @@
 
 #![allow(non_snake_case)]
 
-use faer::Mat;
-
 use crate::algebra::delassus::Series;
-use crate::algebra::dense::{DenseLu, mul_add, ratio, refill, zero};
+use crate::algebra::dense::{mul_add, ratio, refill, zero};
 use crate::condensed::branches::changed;
 use crate::condensed::forces::Forces;
 use crate::condensed::pair::Pair;
 use crate::condensed::point_row::PointRow;
 use crate::condensed::problem::ContactProblem;
 use crate::condensed::stages::rescue;
-use crate::condensed::whole_body::WholeBody;
 use crate::contract::law::{Branch, return_map, return_map_derivative};
 use crate::contract::state::{Monitor, Status};
 use crate::error::MethodError;
 use crate::newton::line_search::LineSearch;
-use crate::newton::step::{Tangent, monolithic_step};
+use crate::newton::step::{Tangent, body_step};
 
 /// Below this a residual that no longer halves has met rounding.
 const ROUNDING: f64 = 1e-12;
@@ -270,9 +267,9 @@ impl SpringNewton {
         hold: bool,
     ) -> Result<bool, MethodError> {
         let (at, step, dv) = (&self.at, &mut self.step, &mut self.jump);
+        tangent_rows(problem, springs, at, &mut self.rows);
         match &mut self.tangent {
             Tangent::Condensed(condensed) => {
-                tangent_rows(problem, springs, at, &mut self.rows);
                 let w = problem.operator.w.clone();
                 let w = springs.coupled.as_ref().map_or(&*w, |c| c.series);
                 if !condensed.solve(problem, w, &at.forces.p, &self.rows, hold, step) {
@@ -282,10 +279,12 @@ impl SpringNewton {
                 w.apply_add(&step.p, dv);
                 problem.operator.modes.add(&step.beta, dv);
             }
-            Tangent::Monolithic(body) => match whole_step(body, problem, springs, at)? {
-                Some(Pair { p, v, beta }) => (*step, *dv) = (Forces { p, beta }, v),
-                None => return Ok(false),
-            },
+            Tangent::Monolithic(body) => {
+                match body_step(body, problem, &at.forces.p, &mut self.rows)? {
+                    Some(Pair { p, v, beta }) => (*step, *dv) = (Forces { p, beta }, v),
+                    None => return Ok(false),
+                }
+            }
         }
         let Forces { p: dz, beta } = &mut self.direction;
         let of_row = |k: usize| {
@@ -322,44 +321,6 @@ fn tangent_rows(
         rows
     };
     refill(rows, problem.rows.iter().enumerate().map(of_point));
-}
-
-/// The same step (δP, δv, δβ) from the displacement form on the whole body, as papers usually run penalty methods; `None` if the
-/// tangent is singular.
-///
-/// With T = Π'(z) and M = (I − T)/r + T/k, which never loses digits, the springs read δP = −T M⁻¹ (F + δv).
-fn whole_step(
-    body: &mut Option<Box<WholeBody>>,
-    problem: &mut ContactProblem<'_>,
-    springs: &Springs<'_>,
-    at: &Trial,
-) -> Result<Option<Pair>, MethodError> {
-    let (r, c, mismatch) = (&springs.r, &springs.compliance, &at.mismatch);
-    let mut rows = Vec::with_capacity(problem.rows.points());
-    for i in 0..problem.rows.points() {
-        let own = problem.rows.of(i);
-        let t = return_map_derivative(problem.friction(i), &at.z[own.clone()], at.branches[i]);
-        let (size, first) = (own.len(), own.start);
-        let unit = |a: usize, b: usize| f64::from(u8::from(a == b));
-        // Mᵀ, since the rows of T M⁻¹ are wanted.
-        let Some(m) = DenseLu::new(&Mat::from_fn(size, size, |b, a| {
-            (unit(a, b) - t[a][b]) / r[first + a] + c[first + a] * t[a][b]
-        })) else {
-            return Ok(None);
-        };
-        let mut of_point = PointRow::reading([0.0; 3]);
-        for a in 0..size {
-            let Some(slope) = m.solve(&t[a][..size]) else {
-                return Ok(None);
-            };
-            of_point[a].a[a] = 1.0;
-            of_point[a].c[..size].copy_from_slice(&slope);
-            of_point[a].h = (0..size).map(|b| slope[b] * mismatch[first + b]).sum();
-        }
-        rows.push(of_point);
-    }
-    let P = &at.forces.p;
-    monolithic_step(body, problem, P, &mut rows, WholeBody::explicit)
 }
 
 /// Adapts a [`Monitor`] and the history to the `report` argument of [`SpringNewton::solve`]. What is noted is the violation

@@ -3,7 +3,7 @@
 //! A δP + C δv = −h  at every point,   δv = W δP + Q δβ,   Qᵀ (P + δP) = c
 //! ```
 //! Condensed: rows that read δP = const are eliminated, the rest is one dense LU, or few changes of an earlier one (`reuse.rs`).
-//! Monolithic: the same rows beside K δu = Bᵀ δP in one sparse LU, as papers usually run Newton methods. Both give the same step to
+//! Monolithic: the same rows beside K δu = Bᵀ δP on all unknowns, as papers usually run Newton methods. Both give the same step to
 //! rounding.
 
 #![allow(non_snake_case)]
@@ -26,12 +26,12 @@ use crate::newton::reuse::{Factored, Rows, Solved};
 pub(crate) enum Tangent {
     /// On the contact rows, with W.
     Condensed(Box<CondensedStep>),
-    /// On all unknowns and contact forces; the pattern is analysed once per system. W is not formed.
+    /// On all unknowns; the pattern is analysed once per system. W is not formed.
     Monolithic(Option<Box<WholeBody>>),
 }
 
 options! {
-    MONOLITHIC: Switch("monolithic", false): "1: factor the matrix of the whole body in every iteration instead of the condensed one";
+    MONOLITHIC: Switch("monolithic", false): "1: solve each step on all unknowns of the body instead of the contact rows";
 }
 
 impl Default for Tangent {
@@ -98,7 +98,7 @@ impl Tangent {
                 Ok(condensed.solve(problem, &*w, &x.p, rows, hold, step))
             }
             Tangent::Monolithic(body) => {
-                let found = monolithic_step(body, problem, &x.p, rows, WholeBody::saddle)?;
+                let found = body_step(body, problem, &x.p, rows)?;
                 let singular = found.is_none();
                 if let Some(Pair { p, beta, .. }) = found {
                     *step = Forces { p, beta };
@@ -109,19 +109,17 @@ impl Tangent {
     }
 }
 
-/// The step from the matrix of the whole body, analysed by `new` where that was not done for the system; `None` if it is
-/// singular.
-pub(crate) fn monolithic_step(
+/// The step of the whole body, analysed where that was not done for the system; `None` if its tangent is singular.
+pub(crate) fn body_step(
     body: &mut Option<Box<WholeBody>>,
     problem: &mut ContactProblem<'_>,
     P: &[f64],
     rows: &mut [[PointRow; 3]],
-    new: fn(&ContactSystem) -> Result<WholeBody, MethodError>,
 ) -> Result<Option<Pair>, MethodError> {
     let system = problem.increment.system;
     let body = match body {
         Some(body) if body.belongs_to(system) => body,
-        stale => stale.insert(Box::new(new(system)?)),
+        stale => stale.insert(Box::new(WholeBody::new(system)?)),
     };
     body.step(problem, P, rows)
 }

@@ -16,9 +16,8 @@
 //!
 //! # Options
 //! `normal`, `tangential`: k as multiples of ρ, the mean stiffness the body itself opposes to a contact force.
-//! `max_iterations`. `monolithic`: 1 solves each step
-//! on all unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the
-//! method; the iterates are the same.
+//! `max_iterations`. `monolithic`: 1 solves each step on all unknowns of the body, as
+//! papers usually run the method; the iterates are the same.
 //!
 //! # Guarantees
 //! Without friction the penalised energy is convex: the solution is unique, and Newton's method on a piecewise linear

@@ -13,9 +13,8 @@
 //! A fixed point has P = Π(P − k v), which is the contact law itself: the answer does not depend on k.
 //!
 //! # Options
-//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step on all
-//! unknowns with a sparse LU of K + Bᵀ C B, C the stiffness of the springs in contact, as papers usually run the method; the
-//! iterates are the same. `anderson`: differences kept by the acceleration of Λ (Walker & Ni, SIAM J. Numer. Anal. 49 (2011)
+//! `stiffness`: k as a multiple of ρ = rows/trace(W). `max_outer`, `max_inner`. `monolithic`: 1 solves each step on all unknowns of the body, as
+//! papers usually run the method; the iterates are the same. `anderson`: differences kept by the acceleration of Λ (Walker & Ni, SIAM J. Numer. Anal. 49 (2011)
 //! 1715), taken back where the natural map doubles. With the default stiffness there is little to accelerate, 4 instead of 5
 //! updates in the median, but it gets past stalls: of 1000 random problems (`stickslip study random`, 100 per dimension
 //! and μ = 0, 0.3, 1, 2, 5) 12 instead of 43 are given up.

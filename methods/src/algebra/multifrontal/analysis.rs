@@ -5,6 +5,7 @@
 //! few zeros more are faster than sparse ones (Ashcraft and Grimes 1989).
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::multifrontal::tree::{AssemblyTree, NONE, postorder};
@@ -42,10 +43,10 @@ pub(crate) struct Entries {
     pub place: Vec<u32>,
 }
 
-/// Plan of a factorisation.
+/// Plan of a factorisation, or of many that share it.
 pub(crate) struct Analysis {
-    pub ordering: Ordering,
-    pub tree: AssemblyTree,
+    pub ordering: Arc<Ordering>,
+    pub tree: Arc<AssemblyTree>,
     pub entries: Entries,
 }
 
@@ -63,8 +64,8 @@ impl Analysis {
         let ordering = Ordering::new(original.collect(), contact_begin);
         let (tree, entries) = assembly_tree(k, &ordering, &sizes);
         Self {
-            ordering,
-            tree,
+            ordering: Arc::new(ordering),
+            tree: Arc::new(tree),
             entries,
         }
     }

@@ -70,7 +70,7 @@ fn shuffled(n: usize, step: usize, random: &mut Random) -> (Vec<usize>, Vec<bool
     (order, (0..n).map(|j| j % step == 0).collect())
 }
 
-fn factor(k: &SquareMatrix, analysis: Analysis) -> (Ordering, Result<Cholesky, Failure>) {
+fn factor(k: &SquareMatrix, analysis: Analysis) -> (Arc<Ordering>, Result<Cholesky, Failure>) {
     let Analysis {
         ordering,
         tree,
