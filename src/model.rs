@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod boundary;
+pub mod cost;
 pub mod errors;
 pub mod extent;
 pub mod field_mesh;

@@ -15,7 +15,7 @@ pub(crate) mod state;
 pub(crate) mod system;
 pub(crate) mod tier;
 
-pub use body_work::{ElasticCounters, ElasticTimings};
+pub use body_work::{ElasticCost, ElasticCounters, ElasticTimings};
 pub use elastic::{Elastic, ElasticParts, in_contact};
 pub use judge::{Residuals, consistency, residuals, residuals_of};
 pub use operator::{ContactOperator, DelassusForm, SWAYING};

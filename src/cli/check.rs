@@ -11,9 +11,9 @@ use super::error::CliError;
 use super::output::say;
 use crate::case;
 use crate::model::body::{Body, Needs};
+use crate::model::cost::{Cost, predicted};
 use crate::model::extent::{LoadExtent, SupportExtent, load_extents, support_extents};
 use crate::model::loading::Loading;
-use crate::model::memory::predicted_gb;
 use crate::report::number::significant;
 use crate::run::choice::choices;
 use crate::studies::axes::friction_values;
@@ -39,9 +39,10 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
         choices(&case, &[])?;
         expect::check(&case)?;
         for &refine in &case.sweep.refine {
+            let frictions = friction_values(&case);
             let body = Body::new(&case, refine, &Needs::default()).map_err(RunError::from)?;
             let mut lines = vec![format!(
-                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}, at least {:.2} GB{}",
+                "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}{}{}",
                 file.display(),
                 body.label,
                 body.mesh.cell_count(),
@@ -49,11 +50,11 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
                 body.points.len(),
                 body.space,
                 body.checks.uniform,
-                predicted_gb(case.model.dim(), body.mesh.cell_count() as f64),
-                radii(&body.enrichment.zones)
+                radii(&body.enrichment.zones),
+                cost(&body, frictions.len() * case.path.increments)
             )];
             lines.extend(body.joined.iter().map(|joined| joined_line(&body, joined)));
-            for (index, per_crack) in friction_values(&case).into_iter().enumerate() {
+            for (index, per_crack) in frictions.iter().enumerate() {
                 let friction = per_crack.first().copied().unwrap_or(0.0);
                 let loading = Loading::new(&body, &case, friction).map_err(RunError::from)?;
                 // Friction decides what the closed form gives, and nothing else of it.
@@ -85,6 +86,15 @@ fn radii(all: &[Zone]) -> String {
         Some(_) if least == largest => format!(", branch functions within {least:.3} m"),
         Some(_) => format!(", branch functions within {least:.3} to {largest:.3} m"),
     }
+}
+
+/// `, about 12 s and 4.7 GB by hybrid`.
+fn cost(body: &Body, increments: usize) -> String {
+    let shown = |cost: Cost| {
+        let [seconds, gb] = [cost.seconds, cost.gb].map(|v| significant(v, 2));
+        format!(", about {seconds} s and {gb} GB by hybrid")
+    };
+    predicted(body, increments).map_or_else(String::new, shown)
 }
 
 fn joined_line(body: &Body, joined: &Joined) -> String {

@@ -16,7 +16,7 @@ use crate::case::{Case, CaseError};
 const BYTES: [[f64; 2]; 2] = [[2200.0, 65.0], [20_000.0, 700.0]];
 
 /// Least memory of a run on so many cells [GB].
-pub fn predicted_gb(dim: usize, cells: f64) -> f64 {
+fn predicted_gb(dim: usize, cells: f64) -> f64 {
     let [by_cell, by_entry] = BYTES[usize::from(dim == 3)];
     let entries = match dim {
         2 => cells * cells.log2(),

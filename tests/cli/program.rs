@@ -93,6 +93,8 @@ fn check_says_what_loads_and_supports_amount_to() {
     let text = plane([0.0, 0.0], [1.0, 1.0], [3, 3], &rest);
     std::fs::write(dir.path().join("small.toml"), text).unwrap();
     let (shown, _) = ends_with(0, &["check", "small.toml"], dir.path());
+    // A body of nine cells: the program itself.
+    assert!(shown.contains(" s and 0.023 GB by hybrid\n"), "{shown}");
     let lines: Vec<&str> = shown.lines().skip(1).collect();
     let wanted = [
         "    load 1, traction on top: (0, -530000) N/m over 0.53 m",

@@ -41,13 +41,19 @@ impl Elimination {
     /// With the contact unknowns last W follows from their part of L alone, which is dense: where cracks run all over a body
     /// that is most of the work. Then W is condensed along the tree of the free order instead. Rows that balance a floating body
     /// touch all contact unknowns, which come last there.
-    fn analysis(&self, k: &SquareMatrix, balance: &Balance) -> Analysis {
+    pub fn planned(&self, k: &SquareMatrix, balance: &Balance) -> Planned {
         /// Multiplications and additions below which the order does not matter: a tenth of a second.
         const WORTH: f64 = 2e9;
         /// Least gain by the free order.
         const GAIN: f64 = 0.8;
         /// Part of the work that lies in the contact unknowns where another order may gain so much.
         const DENSE: f64 = 0.1;
+        let clock = Instant::now();
+        let planned = |analysis: Analysis, condensation: f64| Planned {
+            analysis,
+            condensation,
+            analysis_s: clock.elapsed().as_secs_f64(),
+        };
         let last = Analysis::new(k, &self.contact_last, &self.in_contact);
         let c = (k.size() - last.ordering.contact_begin) as f64;
         let m = self.rows.len() as f64;
@@ -59,17 +65,26 @@ impl Elimination {
         );
         if self.free.is_empty() || balance.holds_something() || work < WORTH || dense < DENSE * work
         {
-            return last;
+            return planned(last, condensation);
         }
         let free = Analysis::new(k, &self.free, &vec![false; k.size()]);
         let place = |row: &Vec<usize>| row.iter().map(|&j| free.ordering.inverse[j]).collect();
         let rows = self.rows.iter().map(place);
-        if free.tree.work() + free.tree.condensation(rows) < GAIN * work {
-            free
+        let along_tree = free.tree.condensation(rows);
+        if free.tree.work() + along_tree < GAIN * work {
+            planned(free, along_tree)
         } else {
-            last
+            planned(last, condensation)
         }
     }
+}
+
+/// How K will be factored.
+pub(crate) struct Planned {
+    pub analysis: Analysis,
+    /// Multiplications and additions from there to W.
+    pub condensation: f64,
+    pub analysis_s: f64,
 }
 
 /// The factor with everything needed to solve.
@@ -82,31 +97,12 @@ pub(crate) struct Factor {
     pub pins: Vec<usize>,
     /// Forces and motions of a floating body.
     pub balance: Arc<Balance>,
-    pub analysis_s: f64,
     pub factorisation_s: f64,
 }
 
 impl Factor {
-    /// Of K without its pinned rows and columns.
+    /// Of a K of the pattern that was analysed, without its pinned rows and columns.
     pub fn new(
-        k: &SquareMatrix,
-        elimination: Elimination,
-        pins: Vec<usize>,
-        balance: Arc<Balance>,
-    ) -> Result<Self, MethodError> {
-        let clock = Instant::now();
-        let analysis = elimination.analysis(k, &balance);
-        drop(elimination);
-        let analysis_s = clock.elapsed().as_secs_f64();
-        let factor = Self::as_planned(k, &analysis, pins, balance)?;
-        Ok(Self {
-            analysis_s,
-            ..factor
-        })
-    }
-
-    /// Of a K of the pattern that was analysed.
-    pub fn as_planned(
         k: &SquareMatrix,
         analysis: &Analysis,
         pins: Vec<usize>,
@@ -144,7 +140,6 @@ impl Factor {
             scale,
             pins,
             balance,
-            analysis_s: 0.0,
             factorisation_s,
         })
     }
@@ -340,7 +335,7 @@ mod tests {
                 rows: rows.step_by(4).collect(),
                 in_contact,
             };
-            let analysis = elimination.analysis(&k, balance);
+            let analysis = elimination.planned(&k, balance).analysis;
             analysis.ordering.contact_begin == n * n
         };
         let held = Balance::new(&k, &[], &[]);

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::algebra::condensation::{self, Tractions};
 use crate::algebra::delassus::{Delassus, check_rows, dense};
 use crate::algebra::dense::{norm, ratio};
-use crate::algebra::factor::{Elimination, Factor};
+use crate::algebra::factor::{Elimination, Factor, Planned};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::sparse::{Sparse, computed, held};
@@ -23,6 +23,11 @@ pub(crate) trait Stiffness: Send + Sync {
     /// The factor of K, computed on first use.
     fn factor(&self) -> Result<&Factor, MethodError> {
         Err(MethodError::NoStiffness)
+    }
+
+    /// How K is factored, analysed on first use.
+    fn plan(&self) -> Option<&Planned> {
+        None
     }
 
     /// Factors K unless that is done.
@@ -83,8 +88,9 @@ pub(crate) const INDEFINITE: f64 = 1e-9;
 /// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
     k: SquareMatrix,
-    /// Until K is factored.
+    /// Until K is analysed.
     elimination: Mutex<Elimination>,
+    planned: OnceLock<Planned>,
     pins: Vec<usize>,
     balance: Arc<Balance>,
     factor: OnceLock<Result<Factor, MethodError>>,
@@ -106,8 +112,16 @@ impl SparseStiffness {
             k,
             balance,
             elimination: Mutex::new(elimination),
+            planned: OnceLock::new(),
             pins,
             factor: OnceLock::new(),
+        })
+    }
+
+    fn planned(&self) -> &Planned {
+        self.planned.get_or_init(|| {
+            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
+            std::mem::take(&mut *elimination).planned(&self.k, &self.balance)
         })
     }
 }
@@ -124,13 +138,16 @@ impl Stiffness for SparseStiffness {
     fn factor(&self) -> Result<&Factor, MethodError> {
         let build = || {
             let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
-            Factor::new(&self.k, std::mem::take(&mut elimination), pins, balance)
+            Factor::new(&self.k, &self.planned().analysis, pins, balance)
         };
         self.factor
             .get_or_init(build)
             .as_ref()
             .map_err(Clone::clone)
+    }
+
+    fn plan(&self) -> Option<&Planned> {
+        Some(self.planned())
     }
 
     fn factorise(&self) -> Result<(), MethodError> {
@@ -141,7 +158,7 @@ impl Stiffness for SparseStiffness {
         match self.factor.get() {
             None => (0, 0.0, 0.0),
             Some(Err(_)) => (1, 0.0, 0.0),
-            Some(Ok(factor)) => (1, factor.analysis_s, factor.factorisation_s),
+            Some(Ok(factor)) => (1, self.planned().analysis_s, factor.factorisation_s),
         }
     }
 

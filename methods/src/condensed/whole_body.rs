@@ -209,7 +209,7 @@ impl WholeBody {
             values[place] += spring;
         }
         let held = Arc::new(Balance::new(&self.sprung, &[], &[]));
-        match Factor::as_planned(&self.sprung, &self.analysis, Vec::new(), held) {
+        match Factor::new(&self.sprung, &self.analysis, Vec::new(), held) {
             Ok(factor) => Ok(Some(factor)),
             Err(MethodError::NotPositiveDefinite { .. }) => Ok(None),
             Err(error) => Err(error),
@@ -319,17 +319,15 @@ impl Point {
         let n = self.size;
         let l = faer::Mat::from_fn(n, n, |k, l| rows[k].a[l] + rows[k].c[l] / self.stiff[l]);
         let lu = DenseLu::new(&l)?;
-        let (mut inverse, mut d) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        let mut inverse = [[0.0; 3]; 3];
         for l in 0..n {
             let unit: Vec<f64> = (0..n).map(|k| f64::from(u8::from(k == l))).collect();
-            let column: Vec<f64> = (0..n).map(|k| rows[k].c[l]).collect();
-            let (unit, column) = (lu.solve(&unit)?, lu.solve(&column)?);
-            (0..n).for_each(|k| (inverse[k][l], d[k][l]) = (unit[k], column[k]));
+            let column = lu.solve(&unit)?;
+            (0..n).for_each(|k| inverse[k][l] = column[k]);
         }
-        Some(Spring {
-            inverse,
-            s: positive(d),
-        })
+        let entry = |k: usize, l: usize| (0..n).map(|p| inverse[k][p] * rows[p].c[l]).sum();
+        let s = positive([0, 1, 2].map(|k| [0, 1, 2].map(|l| entry(k, l))));
+        Some(Spring { inverse, s })
     }
 }
 

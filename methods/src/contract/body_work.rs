@@ -13,6 +13,21 @@ pub struct ElasticCounters {
     pub condensations: usize,
 }
 
+/// Work and memory that it takes until W is formed, counted from the pattern of K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElasticCost {
+    /// Multiplications and additions of the factorisation.
+    pub factorisation: f64,
+    /// The same of the condensation.
+    pub condensation: f64,
+    /// Numbers that the factor holds.
+    pub entries: usize,
+    /// Rows of W.
+    pub rows: usize,
+    /// Seconds that the count took: the analysis is done.
+    pub analysis_s: f64,
+}
+
 /// Wall-clock times of work with K, in s; 0 for work not done. All but the last are shared by all runs on the body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ElasticTimings {

@@ -13,7 +13,7 @@ use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::rank;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
-use crate::contract::body_work::{ElasticCounters, ElasticTimings};
+use crate::contract::body_work::{ElasticCost, ElasticCounters, ElasticTimings};
 use crate::contract::operator::ContactOperator;
 use crate::error::{MethodError, check_finite, check_len, check_positive};
 
@@ -253,6 +253,18 @@ impl Elastic {
             products: self.products.load(Relaxed),
             condensations: usize::from(self.delassus.get().is_some()),
         }
+    }
+
+    /// What it takes until W is formed; `None` where only W is known.
+    pub fn cost(&self) -> Option<ElasticCost> {
+        let planned = self.stiffness.plan()?;
+        Some(ElasticCost {
+            factorisation: planned.analysis.tree.work(),
+            condensation: planned.condensation,
+            entries: planned.analysis.tree.entries(),
+            rows: self.rows().len(),
+            analysis_s: planned.analysis_s,
+        })
     }
 
     /// Times of the work done so far.

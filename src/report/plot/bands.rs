@@ -11,7 +11,8 @@ use super::style;
 use crate::report::number::significant;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A triangle in pixels with the field at its corners.
+/// A triangle in pixels with the field at its corners, all of a field in the same sense of rotation: rounding to pixels may
+/// flatten one, and its edges still cancel those of its neighbours.
 pub type Triangle = [(Pixel, f64); 3];
 
 /// About how many bands a field gets.
@@ -114,7 +115,9 @@ fn regions(triangles: &[Triangle], levels: &Levels) -> Vec<Region> {
         let is_cut = |level: &f64| triangle.iter().any(|corner| corner.1 >= *level);
         let cut = levels[above..].iter().take_while(|level| is_cut(level));
         for (region, level) in regions[above..].iter_mut().zip(cut) {
-            region.add(&part_above(triangle, *level));
+            region
+                .edges
+                .extend(Region::edges(&part_above(triangle, *level)));
         }
     }
     whole.sort_unstable();
@@ -217,19 +220,19 @@ pub struct Region {
 }
 
 impl Region {
-    /// Adds a polygon.
+    /// Adds a polygon, whatever its sense.
     pub fn add(&mut self, polygon: &[Pixel]) {
-        self.edges.extend(Self::edges(polygon));
+        let area: i64 = edges_of(polygon)
+            .map(|(a, b)| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]))
+            .sum();
+        let sense = if area < 0 { -1 } else { 1 };
+        self.edges
+            .extend(Self::edges(polygon).map(|(edge, sign)| (edge, sense * sign)));
     }
 
     /// The edges of a polygon.
     fn edges(polygon: &[Pixel]) -> impl Iterator<Item = ([Pixel; 2], i32)> + '_ {
-        let area: i64 = edges_of(polygon)
-            .map(|(a, b)| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]))
-            .sum();
-        // A polygon flattened by the rounding still counts: its edges cancel those of its neighbours.
-        let of = move |(a, b): (Pixel, Pixel)| {
-            let (a, b) = if area < 0 { (b, a) } else { (a, b) };
+        let of = |(a, b): (Pixel, Pixel)| {
             (a != b).then_some(if a < b { ([a, b], 1) } else { ([b, a], -1) })
         };
         edges_of(polygon).filter_map(of)

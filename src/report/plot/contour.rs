@@ -155,7 +155,13 @@ impl Body<'_> {
         let place = |which: usize, point: usize| paper(self.places[which][point]);
         stroke(canvas, &self.outline, |p| place(0, p), MIDDLE, 0.2);
         let corner = |p: usize| (place(1, p), field.values[p]);
-        let triangles = self.faces.iter().flat_map(|face| split(face, corner));
+        let triangles = self.faces.iter().flat_map(|face| {
+            let mut triangles = split(face, corner);
+            if area(face.iter().map(|p| self.places[1][*p])) < 0.0 {
+                triangles.iter_mut().for_each(|t| t.reverse());
+            }
+            triangles
+        });
         let triangles: Vec<Triangle> = triangles.collect();
         bands::fill(canvas, &triangles, &field.levels, 0.05);
         stroke(canvas, &self.outline, |p| place(1, p), BLACK, 0.2);
@@ -214,6 +220,15 @@ fn faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Vec<usize>>, Re
     } else {
         Ok(faces)
     }
+}
+
+/// Twice the area of a polygon, negative if it runs clockwise.
+fn area(corners: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
+    let next = corners.clone().cycle().skip(1);
+    corners
+        .zip(next)
+        .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
+        .sum()
 }
 
 /// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).
