@@ -129,7 +129,7 @@ impl Ellipse {
 }
 
 /// Nearest points of the ellipse (a₀ cos t, a₁ sin t).
-#[inline]
+#[inline(always)]
 fn nearest_in_plane<const L: usize>(half_axes: [f64; 2], x: &[[f64; L]; 2]) -> [[f64; L]; 2] {
     let long = usize::from(half_axes[0] < half_axes[1]);
     let [i, j] = [long, 1 - long];
@@ -147,7 +147,7 @@ fn nearest_in_plane<const L: usize>(half_axes: [f64; 2], x: &[[f64; L]; 2]) -> [
 }
 
 /// The same for a₀ >= a₁ and points of the first quadrant.
-#[inline]
+#[inline(always)]
 fn nearest_in_quadrant<const L: usize>([a, b]: [f64; 2], x: [[f64; L]; 2]) -> [[f64; L]; 2] {
     /// Distance from the long axis, in half axes, that counts as none: ψ is Lipschitz, so it changes by as little.
     const ON_AXIS: f64 = 1e-16;
