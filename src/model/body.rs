@@ -140,6 +140,24 @@ impl Body {
         })
     }
 
+    /// Factors the stiffness.
+    ///
+    /// # Errors
+    /// Cracks so near each other that it is singular, at one of them. All else is for every method to tell.
+    pub fn factorise(&self, case: &Case) -> Result<(), BodyError> {
+        let Err(MethodError::NotPositiveDefinite { unknown, .. }) = self.elastic.factorise() else {
+            return Ok(());
+        };
+        let own = |number: &Option<u32>| number.is_some_and(|n| n as usize == unknown);
+        let place = self.solver_numbers.iter().position(own);
+        let function = place.map(|i| self.enrichment.functions[i / self.mesh.dim()]);
+        let crack = function.and_then(|f| self.nearest(&self.mesh.nodes[f.node as usize]));
+        match crack.filter(|_| case.cracks.len() > 1) {
+            Some(crack) => Err(crack_error(case, &EnrichmentError::Touching(crack)).into()),
+            None => Ok(()),
+        }
+    }
+
     /// Contact forces that the stress implies, in local frames, from all unknowns [N, in 2D N/m]; empty without a
     /// traction operator.
     pub fn traction(&self, all: &[f64]) -> Vec<f64> {

@@ -125,7 +125,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::TooShort(crack) => (*crack, "a longer crack or a finer mesh"),
         EnrichmentError::Undetermined(crack) => (*crack, "a finer mesh, or longer pieces"),
         EnrichmentError::Loose(crack) => (*crack, "a finer mesh, or supports on the piece"),
-        EnrichmentError::Bent(crack) => (
+        EnrichmentError::Bent(crack) | EnrichmentError::Touching(crack) => (
             *crack,
             "cracks that meet in one place, or farther apart than a thousandth of a cell",
         ),

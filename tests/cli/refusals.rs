@@ -132,6 +132,31 @@ fn cracks_that_the_mesh_cannot_have_are_refused() {
     assert_refused(&(pairs + second), "\"node-pairs\"", "alone in its body");
 }
 
+/// Source: the stress suite, seed 1. Goal: where cracks 1e-5 of a cell apart make the stiffness singular, `run` says so at one of them.
+#[test]
+fn cracks_that_the_stiffness_does_not_part_are_refused() {
+    let lines = |points: &str| format!("[[crack]]\npoints_m = {points}\nfriction = 0.1\n");
+    let text = "title = \"near\"\nmodel = \"plane-strain\"\nmaterial = { young_pa = 1.0, poisson = 0.4863761909663148 }\n\
+        mesh.lines_m = [[11.0, 84.0, 170.0], [72.0, 92.0, 110.0, 130.0, 150.0]]\n"
+        .to_owned()
+        + &lines("[[349.21927, -1.5394648], [134.85851, 103.30856]]")
+        + &lines("[[349.2189612800587, -1.540085852005037], [134.8582020728902, 103.30794255836742]]")
+        + "[[support]]\non = \"left\"\ndisplacement_m = [0, \"free\"]\n[[support]]\non = \"bottom\"\n\
+        displacement_m = [\"free\", 0]\n[[load]]\non = \"top\"\npressure_pa = 1e-7\n";
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("near.toml"), text).unwrap();
+    let (shown, complaints) = ends_with(2, &["run", "near.toml"], dir.path());
+    assert!(
+        shown.is_empty() && complaints.starts_with("error: near.toml:6:"),
+        "{complaints}"
+    );
+    assert!(
+        complaints.contains("does not tell their faces apart"),
+        "{complaints}"
+    );
+    assert_eq!(files(dir.path()).len(), 1);
+}
+
 #[test]
 fn motions_that_nothing_holds_are_refused() {
     // None at all: there is no support to point at. A roller: free to slide; a corner: free to turn.

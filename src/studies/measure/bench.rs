@@ -320,8 +320,7 @@ impl Subject {
         memory::reset_peak();
         let needs = needs(&case, task);
         let body = Body::new(&case, asked.refine, &needs)?;
-        // A failure here is one of every method, whose verdict it is.
-        let _told_by_methods = body.elastic.factorise();
+        body.factorise(&case)?;
         Ok(Self::Body(Box::new(Discretised {
             increments: case.path.increments,
             refine: asked.refine,

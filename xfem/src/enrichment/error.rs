@@ -23,6 +23,9 @@ pub enum EnrichmentError {
     /// Places where it meets others that lie too close to be told apart were made one, and a piece was bent by it.
     #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", .0 + 1)]
     Bent(usize),
+    /// The stiffness is singular to working precision next to it.
+    #[error("crack {} runs so near another that this mesh does not tell their faces apart: the stiffness is singular to working precision", .0 + 1)]
+    Touching(usize),
     /// Two cracks in one place.
     #[error(transparent)]
     Overlap(#[from] Overlap),
@@ -70,7 +73,8 @@ impl EnrichmentError {
             | Self::TooShort(_)
             | Self::Undetermined(_)
             | Self::Loose(_)
-            | Self::Bent(_) => {}
+            | Self::Bent(_)
+            | Self::Touching(_) => {}
         }
         self
     }
