@@ -21,7 +21,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::algebra::dense::{DenseLu, add, along, larger, minus, norm};
+use crate::algebra::dense::{DenseLu, add, larger, minus, norm};
 use crate::algebra::factor::Factor;
 use crate::algebra::floating::Balance;
 use crate::algebra::gmres::gmres;
@@ -49,9 +49,6 @@ const MOST_BORROWED: usize = 8;
 
 /// A block of a point.
 type Block = [[f64; 3]; 3];
-
-/// (δP, δv) by row.
-type Step = (Vec<f64>, Vec<f64>);
 
 /// The body of one system.
 pub(crate) struct WholeBody {
@@ -157,20 +154,20 @@ impl WholeBody {
                 }
             }
         }
-        let Some((dP, dv)) = self.balanced(problem, rows)? else {
-            return Ok(None);
-        };
-        let (p, v) = (along(&dP, 1.0, &lack), along(&dv, 1.0, &response));
-        let beta = amplitudes(problem, &p, v.clone());
-        Ok(Some(Pair { p, v, beta }))
+        let mut found = self.balanced(problem, rows)?;
+        if let Some(Pair { p, v, .. }) = &mut found {
+            add(1.0, &lack, p);
+            add(1.0, &response, v);
+        }
+        Ok(found)
     }
 
-    /// (δP, δv) of balanced forces, by the factor at hand or else by its own.
+    /// The step of balanced forces, by the factor at hand or else by its own.
     fn balanced(
         &mut self,
         problem: &mut ContactProblem<'_>,
         rows: &[[PointRow; 3]],
-    ) -> Result<Option<Step>, MethodError> {
+    ) -> Result<Option<Pair>, MethodError> {
         let springs = self.points.iter().zip(rows).map(|(p, rows)| p.spring(rows));
         let Some(springs) = springs.collect::<Option<Vec<Spring>>>() else {
             return Ok(None);
@@ -216,7 +213,7 @@ impl WholeBody {
         }
     }
 
-    /// (δP, δv) on a factor; `None` if `most` vectors a round do not suffice.
+    /// The step on a factor; `None` if `most` vectors a round do not suffice.
     fn solve(
         &self,
         problem: &ContactProblem<'_>,
@@ -224,10 +221,11 @@ impl WholeBody {
         springs: &[Spring],
         rows: &[[PointRow; 3]],
         most: usize,
-    ) -> Option<Step> {
+    ) -> Option<Pair> {
         let m = self.set.len();
         // With what the pins carry behind the forces.
         let (mut P, mut v) = (vec![0.0; m + self.pins.len()], vec![0.0; m]);
+        let mut beta = vec![0.0; problem.modes()];
         let (mut last, mut size) = (f64::INFINITY, 0.0);
         for _ in 0..ROUNDS {
             let mut left: Vec<f64> = P.iter().map(|p| -p).collect();
@@ -240,18 +238,18 @@ impl WholeBody {
             size = larger(size, found);
             if found <= SOLVED * size || found > 0.5 * last {
                 P.truncate(m);
-                return (found <= ROUNDING * size).then_some((P, v));
+                return (found <= ROUNDING * size).then_some(Pair { p: P, v, beta });
             }
             last = found;
             let (dP, dv) = self.round(&left, on, springs, rows, most)?;
             add(1.0, &dP, &mut P);
             add(1.0, &dv, &mut v);
-            v = followed(problem, &P[..m], &v);
+            (v, beta) = followed(problem, &P[..m], &v);
         }
         None
     }
 
-    /// (δP, δv) of one round of vectors, and what the pins carry.
+    /// (δP, δv) of one round of vectors, δP with what the pins carry.
     fn round(
         &self,
         left: &[f64],
@@ -259,7 +257,7 @@ impl WholeBody {
         springs: &[Spring],
         rows: &[[PointRow; 3]],
         most: usize,
-    ) -> Option<Step> {
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
         let (mut forces, mut jumps) = (Vec::new(), Vec::new());
         let mut work = vec![0.0; self.sprung.size()];
         let y = gmres(left, ROUND, most, |residual| {
@@ -393,20 +391,12 @@ fn widened(K: &SquareMatrix, points: &[Point]) -> Result<SquareMatrix, MethodErr
     SquareMatrix::symmetric(K.size(), begin, rows, values)
 }
 
-/// W δP + Q δβ with the rigid motion of what is held to be δv.
-fn followed(problem: &ContactProblem<'_>, dP: &[f64], dv: &[f64]) -> Vec<f64> {
+/// W δP + Q δβ with the rigid motion of what is held to be δv, δβ = Qᵀ (δv − W δP); and δβ.
+fn followed(problem: &ContactProblem<'_>, dP: &[f64], dv: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut v = vec![0.0; dP.len()];
     problem.operator.w.apply_add(dP, &mut v);
     let modes = &problem.operator.modes;
-    modes.add(&modes.components(&minus(dv, &v)), &mut v);
-    v
-}
-
-/// δβ = Qᵀ (δv − W δP).
-fn amplitudes(problem: &ContactProblem<'_>, dP: &[f64], mut dv: Vec<f64>) -> Vec<f64> {
-    if problem.modes() > 0 {
-        let minus: Vec<f64> = dP.iter().map(|p| -p).collect();
-        problem.operator.w.apply_add(&minus, &mut dv);
-    }
-    problem.operator.modes.components(&dv)
+    let beta = modes.components(&minus(dv, &v));
+    modes.add(&beta, &mut v);
+    (v, beta)
 }

@@ -437,12 +437,9 @@ impl Elastic {
 
 /// All rows of every point, or the normal ones where there will be no friction.
 fn condensed_rows(dim: usize, points: usize, frictionless: &[bool]) -> RowSet {
-    let of = |i| {
-        if frictionless.get(i) == Some(&true) {
-            1
-        } else {
-            dim
-        }
+    let of = |i| match frictionless.get(i) {
+        Some(true) => 1,
+        _ => dim,
     };
     RowSet::new(dim, &(0..points).map(of).collect::<Vec<_>>())
 }

@@ -12,6 +12,7 @@ use super::series::Panel;
 use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::significant;
+use stickslip_xfem::geometry::polygon;
 
 /// Least and greatest height of a colour bar, and room right of a body for it [mm].
 const BAR_MM: [f64; 2] = [32.0, 60.0];
@@ -94,7 +95,13 @@ fn contours(
     let (moved, factor) = deformed(picture)?;
     let places = [&picture.points, &moved];
     let places = places.map(|points| points.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>());
-    let faces = conforming(picture, &faces(picture, &places[1])?);
+    let mut faces = conforming(picture, &faces(picture, &places[1])?);
+    for face in &mut faces {
+        let corners: Vec<[f64; 3]> = face.iter().map(|p| moved[*p]).collect();
+        if polygon::area(&corners) < 0.0 {
+            face.reverse();
+        }
+    }
     let outline = outline(&faces).into_iter().collect();
     let Some(shown) = Box2::around(places.iter().flatten().copied()) else {
         return fail(DISPLACEMENT, "no finite values");
@@ -155,13 +162,7 @@ impl Body<'_> {
         let place = |which: usize, point: usize| paper(self.places[which][point]);
         stroke(canvas, &self.outline, |p| place(0, p), MIDDLE, 0.2);
         let corner = |p: usize| (place(1, p), field.values[p]);
-        let triangles = self.faces.iter().flat_map(|face| {
-            let mut triangles = split(face, corner);
-            if area(face.iter().map(|p| self.places[1][*p])) < 0.0 {
-                triangles.iter_mut().for_each(|t| t.reverse());
-            }
-            triangles
-        });
+        let triangles = self.faces.iter().flat_map(|face| split(face, corner));
         let triangles: Vec<Triangle> = triangles.collect();
         bands::fill(canvas, &triangles, &field.levels, 0.05);
         stroke(canvas, &self.outline, |p| place(1, p), BLACK, 0.2);
@@ -220,15 +221,6 @@ fn faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Vec<usize>>, Re
     } else {
         Ok(faces)
     }
-}
-
-/// Twice the area of a polygon, negative if it runs clockwise.
-fn area(corners: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
-    let next = corners.clone().cycle().skip(1);
-    corners
-        .zip(next)
-        .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
-        .sum()
 }
 
 /// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).

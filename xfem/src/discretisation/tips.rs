@@ -174,81 +174,73 @@ impl<'a> SolvedBody<'a> {
     /// # Errors
     /// [`CellError`] of a cell that cannot be integrated.
     pub fn intensities(&self, tip: &TipFrame, ways: usize) -> Result<TipIntensities, CellError> {
-        intensities(self, tip, ways)
-    }
-}
-
-fn intensities(
-    solved: &SolvedBody<'_>,
-    tip: &TipFrame,
-    ways: usize,
-) -> Result<TipIntensities, CellError> {
-    let SolvedBody { body, u, .. } = *solved;
-    let integrator = body.integrator();
-    let mesh = &body.mesh;
-    let crack = &body.cracks[tip.crack];
-    let edges = (cells_at(mesh, &tip.position).into_iter()).map(|c| mesh.map(c).longest_edge());
-    let size = edges.fold(0.0, f64::max);
-    let ranges = REACHES.map(|part| {
-        let to = part * FIT_REACH * crack_size(crack);
-        FitRange {
-            from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
-            to,
-        }
-    });
-    if mesh.dim() == 3 {
-        let jump = |x: &Point| jump_at(&integrator, tip.crack, x, u);
-        let fit = |range| jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump);
-        return Ok(TipIntensities {
-            jumps: ranges.into_iter().filter_map(fit).take(ways).collect(),
-            integrals: Vec::new(),
-            obstacle: None,
+        let SolvedBody { body, u, .. } = *self;
+        let integrator = body.integrator();
+        let mesh = &body.mesh;
+        let crack = &body.cracks[tip.crack];
+        let edges = (cells_at(mesh, &tip.position).into_iter()).map(|c| mesh.map(c).longest_edge());
+        let size = edges.fold(0.0, f64::max);
+        let ranges = REACHES.map(|part| {
+            let to = part * FIT_REACH * crack_size(crack);
+            FitRange {
+                from: (FIT_LEFT_OUT * to).max(FIT_CELLS_LEFT_OUT * size),
+                to,
+            }
         });
-    }
-    let own = (solved.faces.iter()).filter(|(p, _)| p.crack == crack.number);
-    let samples = own
-        .map(|(p, _)| (p, norm(&sub(&p.x, &tip.position))))
-        .filter(|(_, distance)| *distance <= ranges[0].to)
-        .map(|(p, distance)| JumpSample {
-            distance,
-            jump: p.jump(&integrator, u),
-            weight: p.weight,
-        });
-    let samples: Vec<JumpSample> = samples.collect();
-    let fit = |range| jump_fit(tip, body.lame, range, samples.iter().copied());
-    let gradients = |cell: usize, points: &[ComparisonPoint]| {
-        let mut stress = integrator.stress(cell)?;
-        let at = |p: &ComparisonPoint| {
-            let p = &p.point;
-            stress.field(&p.xi, &p.x, p.region, u).1
-        };
-        Ok(points.iter().map(at).collect::<Vec<_>>())
-    };
-    let fields = Fields {
-        gradients: &gradients,
-        faces: &solved.faces,
-        body_force: solved.loads.body_force,
-    };
-    let (mut integrals, mut obstacles) = (Vec::new(), Vec::new());
-    for cells in DOMAIN_CELLS {
-        if integrals.len() == ways {
-            break;
+        if mesh.dim() == 3 {
+            let jump = |x: &Point| jump_at(&integrator, tip.crack, x, u);
+            let fit = |range| jump_fit_along(tip, body.lame, range, FRONT_SAMPLES, jump);
+            return Ok(TipIntensities {
+                jumps: ranges.into_iter().filter_map(fit).take(ways).collect(),
+                integrals: Vec::new(),
+                obstacle: None,
+            });
         }
-        let domain = Domain {
-            radius: cells * size,
-            fronts: &solved.fronts,
-            rule: RULE,
+        let own = (self.faces.iter()).filter(|(p, _)| p.crack == crack.number);
+        let samples = own
+            .map(|(p, _)| (p, norm(&sub(&p.x, &tip.position))))
+            .filter(|(_, distance)| *distance <= ranges[0].to)
+            .map(|(p, distance)| JumpSample {
+                distance,
+                jump: p.jump(&integrator, u),
+                weight: p.weight,
+            });
+        let samples: Vec<JumpSample> = samples.collect();
+        let fit = |range| jump_fit(tip, body.lame, range, samples.iter().copied());
+        let gradients = |cell: usize, points: &[ComparisonPoint]| {
+            let mut stress = integrator.stress(cell)?;
+            let at = |p: &ComparisonPoint| {
+                let p = &p.point;
+                stress.field(&p.xi, &p.x, p.region, u).1
+            };
+            Ok(points.iter().map(at).collect::<Vec<_>>())
         };
-        match interaction(&integrator, tip, domain, &fields)? {
-            Ok(found) => integrals.push(found),
-            // The smaller one may reach less.
-            Err(obstacle) => obstacles.push(obstacle),
+        let fields = Fields {
+            gradients: &gradients,
+            faces: &self.faces,
+            body_force: self.loads.body_force,
+        };
+        let (mut integrals, mut obstacles) = (Vec::new(), Vec::new());
+        for cells in DOMAIN_CELLS {
+            if integrals.len() == ways {
+                break;
+            }
+            let domain = Domain {
+                radius: cells * size,
+                fronts: &self.fronts,
+                rule: RULE,
+            };
+            match interaction(&integrator, tip, domain, &fields)? {
+                Ok(found) => integrals.push(found),
+                // The smaller one may reach less.
+                Err(obstacle) => obstacles.push(obstacle),
+            }
         }
+        let obstacle = obstacles.get(1).copied().filter(|_| integrals.is_empty());
+        Ok(TipIntensities {
+            jumps: ranges.into_iter().filter_map(fit).take(1).collect(),
+            integrals,
+            obstacle,
+        })
     }
-    let obstacle = obstacles.get(1).copied().filter(|_| integrals.is_empty());
-    Ok(TipIntensities {
-        jumps: ranges.into_iter().filter_map(fit).take(1).collect(),
-        integrals,
-        obstacle,
-    })
 }

@@ -11,7 +11,7 @@ fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
     cross(&sub(b, a), &sub(c, a))[2]
 }
 
-/// Area [m²].
+/// Area [m²], negative if it runs clockwise.
 pub fn area(polygon: &[Point]) -> f64 {
     (2..polygon.len())
         .map(|i| 0.5 * doubled_area(&polygon[0], &polygon[i - 1], &polygon[i]))
