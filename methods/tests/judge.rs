@@ -228,3 +228,17 @@ fn what_numbers_cannot_hold_is_refused_by_name() {
         );
     }
 }
+
+/// Two springs, the second 1e-14 as stiff and 1.5 times where its force puts it: beside the force of the first, the norm of
+/// all loses 0.2 of that of the second, its own row does not.
+#[test]
+fn displacements_of_a_soft_part_are_held_to_its_own_forces() {
+    let (k, b) = (diagonal(&[1.0, 1e-14]), diagonal(&[1.0, 0.0]));
+    let s = system(&elastic(2, &k, &b, vec![], false), 0.0);
+    let load = force(&s, &[1.0, 1e-14]);
+    for (soft, right) in [(1.0, true), (1.0 + 1e-6, false), (1.5, false)] {
+        let (u, p) = (vec![1.0, soft], vec![0.0; 2]);
+        let found = judge(&s, &load, &ContactState { u, p });
+        assert_eq!(found.equilibrium <= 1e-12, right, "{found:?}");
+    }
+}

@@ -1,5 +1,7 @@
 //! The judge of the mesh: silent on sound bodies, and it speaks for every fault planted in one.
 
+use std::path::Path;
+
 use crate::common::*;
 use stickslip::model::body::Body;
 use stickslip_xfem::contact::surface_point::SurfacePoint;
@@ -173,4 +175,16 @@ displacement_m = [0.0, 0.0]
         "{error}"
     );
     assert!(error.contains("a finer mesh"), "{error}");
+}
+
+/// Source: uniform stress on faces that stick, which overlap nowhere. Goal: three planes that nearly cross in one cell leave a
+/// sliver, 1e-7 of the others in weight, whose displacements hold as many digits as all others. Tolerance: they were off
+/// by 1e-6 of the largest, are by 1e-13.
+#[test]
+fn a_sliver_between_three_planes_lies_where_its_own_forces_put_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/sliver.toml");
+    let results = run(&parse(&std::fs::read_to_string(path).unwrap()), &["hybrid"]);
+    let overlap = value(&results, |_| true, ["max_penetration_sampled", "", ""]);
+    let (strain, size) = (2.7e6 / 8.9e10, 3e-3);
+    assert_below(overlap, 1e-9 * strain * size, "overlap");
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::algebra::condensation::{self, Tractions};
 use crate::algebra::delassus::{Delassus, check_rows, dense};
 use crate::algebra::dense::{norm, ratio};
-use crate::algebra::factor::{Elimination, Factor, Planned};
+use crate::algebra::factor::{Elimination, Factor, Planned, backward_error};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
 use crate::algebra::sparse::{Sparse, computed, held};
@@ -203,15 +203,12 @@ impl Stiffness for SparseStiffness {
         rows.map(|(square, stiffest)| ratio(square, stiffest)).sum()
     }
 
-    /// |K u − Σ f| / (Σ |f| + ||K| |u||).
     fn imbalance(&self, u: &[f64], forces: &[&[f64]]) -> f64 {
-        let mut work = vec![0.0; u.len()];
-        self.k.mul(u, &mut work);
+        let mut residual = vec![0.0; u.len()];
+        self.k.mul(u, &mut residual);
         let sum = |j: usize| forces.iter().map(|f| f[j]).sum::<f64>();
-        let residual: Vec<f64> = work.iter().enumerate().map(|(j, w)| w - sum(j)).collect();
-        self.k.mul_abs(u, &mut work);
-        let forces: f64 = forces.iter().map(|f| norm(f)).sum();
-        ratio(norm(&residual), forces + norm(&work))
+        (residual.iter_mut().enumerate()).for_each(|(j, r)| *r -= sum(j));
+        backward_error(&self.k, u, forces, &residual, &mut vec![0.0; u.len()])
     }
 }
 

@@ -259,7 +259,7 @@ impl ContactProblem<'_> {
         if let (Some(f), Some(k)) = (f, elastic.stiffness())
             && elastic.imbalance(&u, &[&f]) > BALANCED
         {
-            // K r vanishes to rounding of K alone, and r may be far larger than what deforms.
+            // K r vanishes to rounding of K alone, and r may be far larger than what deforms, or than forces on a sliver allow.
             let mut rest = vec![0.0; u.len()];
             k.mul(&u, &mut rest);
             let mut rest = minus(&f, &rest);

@@ -22,7 +22,8 @@ use crate::error::{MethodError, check_finite, check_len};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Residuals {
     /// |K u − f − Bᵀ P| / (|f| + |Bᵀ P| + ||K| |u||), the backward error: rounding leaves ε |K| |u| behind, which on slender
-    /// or large bodies is far above ε |K u|.
+    /// or large bodies is far above ε |K u|. Or 1e-5 of the largest of one row, the componentwise backward error (Oettli and
+    /// Prager, 1964): displacements of a sliver are right if its own forces balance.
     pub equilibrium: f64,
     /// The same under the claim: Nitsche's laws have a consistency term, which counts as a force.
     pub claimed_equilibrium: f64,

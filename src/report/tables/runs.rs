@@ -245,7 +245,7 @@ impl Row for IncrementRow<'_> {
             "local_solves" "" = r.step.local_solves, LOCALS;
             "state_changes" "" = r.step.state_changes, STATE_CHANGES;
             "final_changes" "" = r.step.final_changes, FINAL_CHANGES;
-            "equilibrium" "–" .residual() = r.step.judge.equilibrium, "backward error of equilibrium, found by the judge";
+            "equilibrium" "–" .residual() = r.step.judge.equilibrium, "backward error of equilibrium, found by the judge: of all rows, or 1e-5 of that of the worst row";
             "claimed_equilibrium" "–" .residual() = r.step.judge.claimed_equilibrium, "the same with the consistency term of Nitsche's method, for those who claim it";
             "claimed" "–" .residual() = r.step.judge.claimed, "residual of the laws the method claims to have solved, found by the judge; `violation` where it claims the contact laws";
             "violation" "–" .residual() = r.step.judge.violation, "largest of `natural_map` and the next four columns: what tiers and verdicts refer to";
