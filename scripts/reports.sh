@@ -41,7 +41,7 @@ for part in $parts; do
             # Written by hand: other programs on the same problems.
             find reports -mindepth 1 -maxdepth 1 ! -name peers -exec rm -r {} +
             keep . table1 table2 orders penalty convergence.csv comparison.csv \
-                expectations_by_case cost.svg \
+                expectations.csv cost.svg \
                 'beam_model1.6x18x9.edge-pairs.*.mu-0.1.state.svg' 'penny_crack.*.state.svg' \
                 'plate_mesh1.22x22.edge-pairs.mu-0.8.residual.svg' 'partial_slip.10x10.star.mu-0.5.crack-1.profile.svg' \
                 'partial_slip_cycle.*.crack-1.loop.svg' 'plate_mesh1.22x22.edge-pairs.*.mu-0.1.state.svg' \

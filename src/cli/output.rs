@@ -11,6 +11,7 @@ use serde_json::json;
 use crate::files::visible::visible;
 use crate::report::standard;
 use crate::report::table::{Row, objects, readable};
+use crate::report::tables::details::ExpectedNumber;
 use crate::studies::results::Results;
 
 /// Whether some line could not be printed.
@@ -68,7 +69,7 @@ pub fn show<R: Row>(rows: &[R], note: &str) {
 pub fn conclude(results: &Results, dir: &Path) -> bool {
     show(&standard::runs(results), "");
     if !results.expectations.is_empty() {
-        show(&results.expectations, "");
+        show(&ExpectedNumber::of(&results.expectations), "");
     }
     for remark in results.remarks() {
         say(format_args!("{remark}"));

@@ -1,7 +1,6 @@
 //! The main job: the two tables of the founding paper, our values beside the printed ones, and all that stands with them.
 
 use super::table::{self, readable};
-use super::tables::details::ExpectSummary;
 use super::{Bundle, Provenance, ReportError, figures, standard};
 use crate::studies::paper::comparison::comparison;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
@@ -43,11 +42,7 @@ pub fn tables(table1: &[Table1Row], table2: &[Table2Row]) -> String {
 
 /// Text of the terminal at the end.
 pub fn text(paper: &Paper) -> String {
-    let tables = [
-        readable(&paper.penalty, ""),
-        readable(&paper.converged, ""),
-        readable(&ExpectSummary::of(&paper.results.expectations), ""),
-    ];
+    let tables = [readable(&paper.penalty, ""), readable(&paper.converged, "")];
     let tables = tables.map(|table| table.terminal() + "\n").concat();
     format!(
         "{tables}Model I with exact sub-cells against Model II: {:.1e} mm\n{}",

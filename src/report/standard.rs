@@ -5,7 +5,7 @@
 
 use super::names::stem;
 use super::number::value;
-use super::tables::details::ExpectSummary;
+use super::tables::details::ExpectedNumber;
 use super::tables::runs::RunRow;
 use super::{Bundle, Provenance, ReportError, figures, table, vtu};
 use crate::run::verdict::VerdictKind;
@@ -66,8 +66,7 @@ pub fn add_tables(bundle: &mut Bundle, results: &Results) -> Result<(), ReportEr
     let mut points = results.points();
     points.extend(results.exact_points());
     table::add(bundle, &points, "")?;
-    table::add(bundle, &results.expectations, "")?;
-    table::add(bundle, &ExpectSummary::of(&results.expectations), "")
+    table::add(bundle, &ExpectedNumber::of(&results.expectations), "")
 }
 
 /// The rows of `runs.csv`.

@@ -29,7 +29,7 @@ use crate::studies::paper::comparison::ComparisonRow;
 use crate::studies::paper::penalty::PenaltyRow;
 use crate::studies::paper::printed_tables::{Table1Row, Table2Row};
 use crate::studies::record::Record;
-use crate::studies::rows::{self, ExpectRow, HistoryRow, IncrementRow, QuantityRow};
+use crate::studies::rows::{self, HistoryRow, IncrementRow, QuantityRow};
 use crate::studies::stress::summary::{FaultRow, InvarianceRow, LadderRow};
 
 /// Subject of a table or figure: a section of the page, a chapter of `stickslip show schema`.
@@ -211,10 +211,7 @@ pub fn catalogue() -> Vec<(Chapter, Description)> {
         .chain([Description::of::<OrderRow>()])
         .collect();
     let benchmarks = vec![peers::peers()];
-    let expected = vec![
-        Description::of::<details::ExpectSummary>(),
-        Description::of::<ExpectRow>(),
-    ];
+    let expected = vec![Description::of::<details::ExpectedNumber<'_>>()];
     let details = [
         Description::of::<QuantityRow>(),
         Description::of::<HistoryRow>(),

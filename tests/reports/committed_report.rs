@@ -11,7 +11,7 @@ use std::path::Path;
 
 use stickslip::case::shipped;
 use stickslip::report::tables::catalogue;
-use stickslip::report::tables::details::ExpectSummary;
+use stickslip::report::tables::details::ExpectedNumber;
 use stickslip::report::{standard, table};
 use stickslip::run::progress::Quiet;
 use stickslip::run::registry::method;
@@ -204,10 +204,10 @@ fn fresh_tables() -> BTreeMap<String, Vec<u8>> {
         results.append(run_case(&case, &[], settings, &Quiet).expect("it runs"));
     }
     assert!(results.as_expected(), "{}", standard::summary(&results));
-    let summary = ExpectSummary::of(&results.expectations);
+    let expected = ExpectedNumber::of(&results.expectations);
     let tables = [
         ("comparison.csv", table::csv(&comparison(results.records()))),
-        ("expectations_by_case.csv", table::csv(&summary)),
+        ("expectations.csv", table::csv(&expected)),
     ];
     tables
         .map(|(name, bytes)| (name.into(), bytes.expect("CSV")))

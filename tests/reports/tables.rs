@@ -144,7 +144,7 @@ fn quotes_and_commas_survive_the_csv() {
     let bundle = csv_bundle();
     let mut reader = csv::Reader::from_reader(bundle.get("expectations.csv").expect("a file"));
     let row = reader.records().next().expect("a row").expect("a record");
-    assert_eq!(row[14], results().expectations[0].source);
+    assert_eq!(row[15], results().expectations[0].source);
 }
 
 #[test]
