@@ -127,8 +127,17 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     let mut push = |name: &str, at: &str, component: &str, value: f64| {
         rows.push(Quantity::new([name, at, component], value, dim));
     };
-    for (at, component, total) in reactions(case, body, now) {
-        push("reaction", &at, AXES[component], total);
+    for held in reactions(case, body, now) {
+        let (at, component) = (&held.at, AXES[held.component]);
+        push("reaction", at, component, held.force);
+        if held.nodes > 0 {
+            push(
+                "displacement",
+                at,
+                component,
+                held.moved / held.nodes as f64,
+            );
+        }
     }
     for probe in &case.probes {
         if let Some(node) = body.mesh.node_at(&probe.point) {
@@ -192,33 +201,62 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     rows
 }
 
-/// Reactions by place and component, in case order: the force of the supports on the body. Supports on the same place
-/// add up; an unknown that several places hold counts at the one whose support is in force, the last.
-fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<(String, usize, f64)> {
+/// A component of a place that supports hold.
+struct Held {
+    at: String,
+    component: usize,
+    /// Force of the supports on the body.
+    force: f64,
+    /// Sum of its displacement over so many nodes.
+    moved: f64,
+    nodes: usize,
+}
+
+/// What supports hold, in case order. Supports on the same place add up; an unknown that several places hold counts at the one
+/// whose support is in force, the last.
+fn reactions(case: &Case, body: &Body, now: &Snapshot) -> Vec<Held> {
     let dim = body.mesh.dim();
-    let mut forces = vec![[0.0; 3]; case.supports.len()];
+    let mut sums = vec![[(0.0, 0.0, 0); 3]; case.supports.len()];
     for (&unknown, held) in &body.prescribed {
         let (function, component) = (unknown / dim, unknown % dim);
         let force = now.force[unknown] - now.external[unknown];
         if function < body.mesh.nodes.len() {
-            forces[held.support][component] += force;
+            let (total, moved, nodes) = &mut sums[held.support][component];
+            *total += force;
+            *moved += now.u[unknown];
+            *nodes += 1;
         } else if let Some((own, _)) = held.less {
             // N_j reaches over all copies of its node: this one's share is not the support's of its own.
-            forces[held.support][component] += force / STEP;
-            forces[own][component] -= force / STEP;
+            sums[held.support][component].0 += force / STEP;
+            sums[own][component].0 -= force / STEP;
         }
     }
-    let mut totals: Vec<(String, usize, f64)> = Vec::new();
-    for (support, force) in case.supports.iter().zip(&forces) {
+    let mut all: Vec<Held> = Vec::new();
+    for (support, sums) in case.supports.iter().zip(&sums) {
         let at = region_name(&support.on);
         for component in (0..dim).filter(|&a| support.displacement[a].is_some()) {
-            match totals.iter_mut().find(|t| t.0 == at && t.1 == component) {
-                Some(total) => total.2 += force[component],
-                None => totals.push((at.clone(), component, force[component])),
-            }
+            let known = all
+                .iter()
+                .position(|h| h.at == at && h.component == component);
+            let place = known.unwrap_or_else(|| {
+                let at = at.clone();
+                all.push(Held {
+                    at,
+                    component,
+                    force: 0.0,
+                    moved: 0.0,
+                    nodes: 0,
+                });
+                all.len() - 1
+            });
+            let (force, moved, nodes) = sums[component];
+            let held = &mut all[place];
+            held.force += force;
+            held.moved += moved;
+            held.nodes += nodes;
         }
     }
-    totals
+    all
 }
 
 /// All contact points.

@@ -21,6 +21,7 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
             .collect()
     };
     let anywhere = || std::iter::once(String::new()).chain(cracks()).collect();
+    let held = || case.supports.iter().map(|s| region_name(&s.on));
     for expect in &case.expects {
         let name = expect.quantity.as_str();
         let Some(unit) = unit(name, dim) else {
@@ -28,13 +29,10 @@ pub fn check(case: &Case) -> Result<(), CaseError> {
             return Err(case.error(&expect.span, name, allowed, "unknown quantity"));
         };
         let (places, components): (Vec<String>, &[&str]) = match name {
-            "reaction" => {
-                let places = case.supports.iter().map(|s| region_name(&s.on));
-                (places.collect(), &AXES[..dim])
-            }
+            "reaction" => (held().collect(), &AXES[..dim]),
             "displacement" => {
-                let places = case.probes.iter().map(|p| p.name.clone());
-                (places.collect(), &AXES[..dim])
+                let probes = case.probes.iter().map(|p| p.name.clone());
+                (held().chain(probes).collect(), &AXES[..dim])
             }
             "contact_force" => (cracks().collect(), &LOCAL[..dim]),
             "mean_slip" => (cracks().collect(), &LOCAL[1..dim]),

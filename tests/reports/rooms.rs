@@ -267,9 +267,9 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 13] = [
-    ("methods/src", 19_230), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3015), ("src/run", 2235),
-    ("src/studies", 16_645), ("src/report", 10_485), ("src/cli", 2050), ("benches", 570), ("methods/tests", 3290), ("xfem/tests", 125),
-    ("tests", 17_955),
+    ("methods/src", 19_245), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2235),
+    ("src/studies", 16_645), ("src/report", 10_530), ("src/cli", 2050), ("benches", 570), ("methods/tests", 3300), ("xfem/tests", 125),
+    ("tests", 17_970),
 ];
 
 /// Lines of all sources in a folder and below.

@@ -30,7 +30,8 @@ const UNMOVED: f64 = 1e-6;
 
 /// Backward error of displacements u under some forces, r = K u − Σ f the residual:
 /// ```text
-/// max(|r| / (||K| |u|| + Σ |f|),  ROW max_j |r_j| / ((|K| |u| + Σ |f|)_j + UNMOVED K_jj max |u|))
+/// max(|r| / (||K| |u|| + Σ |f|),  ROW max_j |r_j| / ((|K| |u| + Σ |f|)_j + UNMOVED K_jj u_max))
+/// u_max = max(max |u_j|, max Σ |f_j| / max K_jj)
 /// ```
 /// The norm of all rows loses the forces on a sliver beside those on whole cells, and its displacements then are anything; its
 /// own rows do not (Oettli and Prager, 1964). `size` is work.
@@ -42,10 +43,17 @@ pub(crate) fn backward_error(
     size: &mut [f64],
 ) -> f64 {
     k.mul_abs(u, size);
-    let largest = u.iter().fold(0.0, |m: f64, u| larger(m, u.abs()));
+    let on = |j: usize| forces.iter().map(|f| f[j].abs()).sum::<f64>();
+    let (mut moved, mut force, mut stiffest) = (0.0, 0.0, 0.0);
+    for (j, u) in u.iter().enumerate() {
+        moved = larger(moved, u.abs());
+        force = larger(force, on(j));
+        stiffest = larger(stiffest, k.diagonal(j));
+    }
+    let moved = larger(moved, ratio(force, stiffest));
     let rows = residual.iter().enumerate().map(|(j, r)| {
-        let own = size[j] + forces.iter().map(|f| f[j].abs()).sum::<f64>();
-        ratio(r.abs(), own + UNMOVED * k.diagonal(j) * largest)
+        let own = size[j] + on(j) + UNMOVED * k.diagonal(j) * moved;
+        ratio(r.abs(), own)
     });
     let forces: f64 = forces.iter().map(|f| norm(f)).sum();
     let all = ratio(norm(residual), norm(size) + forces);
