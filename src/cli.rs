@@ -18,6 +18,8 @@ mod stress;
 mod study;
 mod work;
 
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
@@ -79,17 +81,28 @@ enum Verb {
 ///
 /// A program with methods of its own is this call with a registry that holds them.
 pub fn program(methods: Registry) -> ExitCode {
-    if !install(methods) {
+    let file = std::env::current_exe().map_err(|e| e.to_string());
+    ExitCode::from(program_of(methods, std::env::args_os().collect(), file))
+}
+
+/// The same for a command line, the name of the program first, and the file that starts it again: workers are processes of
+/// their own. Returns the exit code.
+pub fn program_of(
+    methods: Registry,
+    arguments: Vec<OsString>,
+    file: Result<PathBuf, String>,
+) -> u8 {
+    if !install(methods) || arguments::PROGRAM.set(file).is_err() {
         warn(format_args!(
             "error: the methods of this program are settled already"
         ));
-        return ExitCode::from(2);
+        return 2;
     }
     let mut command = Cli::command();
     command.build();
-    let arguments = std::env::args_os();
     let main_job = (arguments.len() <= 1).then(|| "paper".into());
-    let matches = command.clone().get_matches_from(arguments.chain(main_job));
+    let arguments = arguments.into_iter().chain(main_job);
+    let matches = command.clone().get_matches_from(arguments);
     let plan = arguments::plan(&command, &matches);
     let ended = match Cli::from_arg_matches(&matches) {
         Ok(cli) => main(cli, plan),
@@ -97,14 +110,14 @@ pub fn program(methods: Registry) -> ExitCode {
     };
     if ended.is_ok() && output::LOST.load(Ordering::SeqCst) {
         warn(format_args!("error: standard output cannot be written"));
-        return ExitCode::from(2);
+        return 2;
     }
     match ended {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
+        Ok(true) => 0,
+        Ok(false) => 1,
         Err(error) => {
             warn(format_args!("error: {error}"));
-            ExitCode::from(2)
+            2
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::any::TypeId;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use super::error::CliError;
 use crate::case::{self, Case, shipped};
@@ -46,6 +47,16 @@ pub fn find_cases(names: &[String]) -> Result<Vec<Case>, CliError> {
     let cases = cases.collect::<Result<Vec<_>, _>>()?;
     refuse_twins("case", cases.iter().map(|case| case.name.as_str()))?;
     Ok(cases)
+}
+
+/// The file that starts this program, or why it is not known.
+pub static PROGRAM: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+
+/// That file.
+pub fn program_file() -> Result<&'static PathBuf, CliError> {
+    let unknown = || CliError::Program("it is not known");
+    let file = PROGRAM.get().ok_or_else(unknown)?;
+    file.as_ref().map_err(|why| CliError::Program(why))
 }
 
 /// Where a command writes.

@@ -78,7 +78,7 @@ pub enum CliError {
     Lab(#[from] LabError),
     /// This program cannot be found to start it again.
     #[error("cannot find this program to measure cells in a process of its own: {0}")]
-    Program(std::io::Error),
+    Program(&'static str),
     /// Interruptions cannot be caught.
     #[error("cannot watch for interruptions: {0}")]
     Interrupt(ctrlc::Error),

@@ -89,7 +89,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
             .collect(),
         shard: arguments.shard.unwrap_or(Shard::ALL),
     };
-    let program = std::env::current_exe().map_err(CliError::Program)?;
+    let program = super::arguments::program_file()?;
     watch_for_interruption()?;
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     // Not how many scenes: records are kept, more may follow.
@@ -99,7 +99,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     let bar = Bar::with_lines();
     let mut workers = Workers {
         lab: Lab {
-            program: &program,
+            program,
             jobs: arguments.jobs.map_or(cores, usize::from),
             repeats: None,
             limits: LIMITS,

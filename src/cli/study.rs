@@ -144,7 +144,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         .claim(&name.unwrap_or("study".into()), whole)?;
     claim.mark()?;
     let records = Records::of(claim.dir());
-    let program = std::env::current_exe().map_err(CliError::Program)?;
+    let program = super::arguments::program_file()?;
     watch_for_interruption()?;
     if is_short(arguments.memory_limit) {
         warn(format_args!(
@@ -156,7 +156,7 @@ pub fn run(arguments: Arguments) -> Result<bool, CliError> {
         say(told);
     }
     let lab = Lab {
-        program: &program,
+        program,
         jobs: usize::from(arguments.jobs),
         repeats: (!arguments.untimed).then_some(sweep.repeats),
         limits: Limits {

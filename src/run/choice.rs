@@ -1,6 +1,8 @@
 //! Which method runs, with which options.
 
+use std::fmt;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use stickslip_methods::{Enforcement, Method, OptionError, OptionSpec, OptionValue, Options};
@@ -21,12 +23,27 @@ pub struct Choice {
 }
 
 /// Where a method comes from.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 enum Source {
     /// The registry, with options, defaults filled in.
     Registry(&'static Method, Options),
     /// A program.
     Outside(Program),
+    /// Whoever embeds the program.
+    Own(Build),
+}
+
+/// Makes an instance of a method.
+type Build = Arc<dyn Fn() -> Box<dyn Enforcement> + Send + Sync>;
+
+impl fmt::Debug for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Registry(method, options) => write!(f, "{} {options:?}", method.name),
+            Self::Outside(program) => write!(f, "{program:?}"),
+            Self::Own(_) => write!(f, "own"),
+        }
+    }
 }
 
 impl Choice {
@@ -75,6 +92,15 @@ impl Choice {
         })
     }
 
+    /// A method that whoever embeds the program brings along, taken for one that solves the contact laws.
+    pub fn own(label: &str, build: Build) -> Self {
+        Choice {
+            label: label.to_owned(),
+            source: Source::Own(build),
+            seconds: SECONDS,
+        }
+    }
+
     fn outside(path: &str) -> Result<Self, ChoiceError> {
         let program = Program::find(path).map_err(|why| ChoiceError::Program {
             path: path.into(),
@@ -95,6 +121,7 @@ impl Choice {
                 "" => method.name.to_owned(),
                 list => format!("{}:{list}", method.name),
             },
+            Source::Own(_) => self.label.clone(),
         }
     }
 
@@ -102,7 +129,7 @@ impl Choice {
     pub fn name(&self) -> &str {
         match &self.source {
             Source::Registry(method, _) => method.name,
-            Source::Outside(_) => &self.label,
+            Source::Outside(_) | Source::Own(_) => &self.label,
         }
     }
 
@@ -110,15 +137,20 @@ impl Choice {
     pub fn exact(&self) -> bool {
         match &self.source {
             Source::Registry(method, _) => method.exact,
-            Source::Outside(_) => true,
+            Source::Outside(_) | Source::Own(_) => true,
         }
+    }
+
+    /// Whether it is one of the registry: another shows nothing of its iterates.
+    pub fn is_registered(&self) -> bool {
+        matches!(self.source, Source::Registry(..))
     }
 
     /// All options with their values; a program has none.
     pub fn options(&self) -> Vec<(OptionSpec, OptionValue)> {
         match &self.source {
             Source::Registry(_, options) => options.iter().collect(),
-            Source::Outside(_) => Vec::new(),
+            Source::Outside(_) | Source::Own(_) => Vec::new(),
         }
     }
 
@@ -131,7 +163,7 @@ impl Choice {
     /// The program, if it is one.
     pub fn program(&self) -> Option<&Program> {
         match &self.source {
-            Source::Registry(..) => None,
+            Source::Registry(..) | Source::Own(_) => None,
             Source::Outside(program) => Some(program),
         }
     }
@@ -140,7 +172,7 @@ impl Choice {
     pub fn limited(self, seconds: f64, until: Option<Instant>) -> Self {
         let source = match self.source {
             Source::Outside(program) => Source::Outside(program.limited(seconds, until)),
-            registered => registered,
+            other => other,
         };
         Self {
             source,
@@ -154,6 +186,7 @@ impl Choice {
         match &self.source {
             Source::Registry(method, options) => (method.build)(options),
             Source::Outside(program) => Box::new(Outside::new(program.clone())),
+            Source::Own(build) => build(),
         }
     }
 

@@ -210,7 +210,10 @@ impl Enforcement for Outside {
 }
 
 /// The state of reactions and amplitudes, or the one the increment started from.
-fn outcome(
+///
+/// # Errors
+/// Arrays of another length.
+pub fn outcome(
     increment: &Increment<'_>,
     status: Status,
     iterations: usize,

@@ -4,8 +4,8 @@
 use std::time::Instant;
 
 use stickslip_methods::{
-    ContactState, ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, Status,
-    Tier, conic::no_equilibrium, consistency, guess, point_status, residuals_of,
+    ContactState, ContactSystem, Enforcement, Increment, MethodError, Monitor, Outcome, Silent,
+    Status, Tier, conic::no_equilibrium, consistency, guess, point_status, residuals_of,
 };
 
 use crate::model::loading::Loading;
@@ -191,9 +191,18 @@ impl<'a> Solver<'a> {
 
     /// Solves an increment, unjudged: what the method returned and its seconds.
     pub fn solve(&mut self, increment: &Increment<'_>) -> (Result<Outcome, MethodError>, Seconds) {
+        self.solve_before(increment, &mut Silent)
+    }
+
+    /// The same before the eyes of a monitor, who may end it: a time limit of its own.
+    fn solve_before(
+        &mut self,
+        increment: &Increment<'_>,
+        eyes: &mut dyn Monitor,
+    ) -> (Result<Outcome, MethodError>, Seconds) {
         // What every method and the judge begin with is no method's time; if it fails, so will they.
         let _ = self.system.elastic().free(&increment.load.force);
-        let mut deadline = Deadline(Instant::now(), self.seconds);
+        let mut deadline = Deadline(Instant::now(), self.seconds, eyes);
         let solve = || self.method.solve(increment, &mut deadline);
         let (outcome, mut seconds) = timed(self.system, solve);
         seconds.reported_s = self.method.reported_s();
@@ -218,7 +227,17 @@ impl<'a> Solver<'a> {
 
     /// Solves an increment and judges the outcome against the violation accepted.
     pub fn judge(&mut self, increment: &Increment<'_>, accepted: f64) -> JudgedIncrement {
-        let (solved, solve) = self.solve(increment);
+        self.judge_before(increment, accepted, &mut Silent)
+    }
+
+    /// The same before the eyes of a monitor.
+    pub fn judge_before(
+        &mut self,
+        increment: &Increment<'_>,
+        accepted: f64,
+        eyes: &mut dyn Monitor,
+    ) -> JudgedIncrement {
+        let (solved, solve) = self.solve_before(increment, eyes);
         let judged = solved.and_then(|mut outcome| {
             // A load that nothing can balance is no fault of the method.
             if outcome.status != Status::Converged && no_equilibrium(increment)? {
@@ -259,12 +278,12 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Stops a method that takes more than so many seconds.
-struct Deadline(Instant, f64);
+/// Stops a method that takes more than so many seconds, or that another monitor stops.
+struct Deadline<'a>(Instant, f64, &'a mut dyn Monitor);
 
-impl Monitor for Deadline {
-    fn step(&mut self, _iteration: usize, _violation: f64) -> bool {
-        self.0.elapsed().as_secs_f64() < self.1
+impl Monitor for Deadline<'_> {
+    fn step(&mut self, iteration: usize, violation: f64) -> bool {
+        self.2.step(iteration, violation) && self.0.elapsed().as_secs_f64() < self.1
     }
 }
 

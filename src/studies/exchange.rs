@@ -89,33 +89,45 @@ pub const ROUNDING: f64 = 1e-12;
 
 /// The body and load of a local problem. A W that is symmetric up to [`ROUNDING`] is held as such.
 ///
-/// V and s become rigid motions and a load f on the contact points with Vᵀ f = s, whose free jump W f is taken off q.
-///
 /// # Errors
-/// Refusals of [`Elastic::from_delassus`]; R ≠ 0 is the caller's to refuse.
+/// Those of [`system`].
 pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
-    let rows = problem.q.len();
     let square = problem.w.as_square()?;
     let w = match square.asymmetry() {
         ..=ROUNDING => problem.w.symmetric_part()?,
         _ => square,
     };
-    let (mut modes, mut force) = (Vec::new(), vec![0.0; rows]);
     // V may have no columns: then it says nothing.
     let equality = (problem.equality.as_ref()).filter(|equality| equality.v.cols() > 0);
-    if let Some(equality) = equality {
-        modes = (0..equality.v.cols())
-            .map(|j| equality.v.column(j))
-            .collect();
-    }
-    let mut offset = problem.q.clone();
-    let elastic = Elastic::from_delassus(problem.dim, w, modes.clone())?;
-    if let Some(equality) = equality {
+    let motions = equality.map(|equality| {
+        let columns = (0..equality.v.cols()).map(|j| equality.v.column(j));
+        (columns.collect(), equality.s.as_slice())
+    });
+    system(problem.dim, w, &problem.q, &problem.mu, motions)
+}
+
+/// The body and load of u = W r + V λ + q, Vᵀ r + s = 0, given the columns of V and s where pieces float.
+///
+/// V and s become rigid motions and a load f on the contact points with Vᵀ f = s, whose free jump W f is taken off q.
+///
+/// # Errors
+/// Refusals of [`Elastic::from_delassus`]; R ≠ 0 is the caller's to refuse.
+pub fn system(
+    dim: usize,
+    w: SquareMatrix,
+    q: &[f64],
+    mu: &[f64],
+    motions: Option<(Vec<Vec<f64>>, &[f64])>,
+) -> Result<System, MethodError> {
+    let (mut force, mut offset) = (vec![0.0; q.len()], q.to_vec());
+    let (modes, balance) = motions.unwrap_or_default();
+    let elastic = Elastic::from_delassus(dim, w, modes.clone())?;
+    if !modes.is_empty() {
         // Independent columns, which the body has just checked: Vᵀ V is regular.
-        let v = DMatrix::from_fn(rows, modes.len(), |i, j| modes[j][i]);
+        let v = DMatrix::from_fn(q.len(), modes.len(), |i, j| modes[j][i]);
         let y = (v.transpose() * &v)
             .lu()
-            .solve(&DVector::from_column_slice(&equality.s));
+            .solve(&DVector::from_column_slice(balance));
         let y = y.ok_or(MethodError::FreeRigidMotion { modes: modes.len() })?;
         force.copy_from_slice((v * y).as_slice());
         let mut free = force.clone();
@@ -127,7 +139,7 @@ pub fn local_system(problem: &LocalProblem) -> Result<System, MethodError> {
     }
     Ok(System {
         elastic,
-        friction: problem.mu.clone(),
+        friction: mu.to_vec(),
         load: Load {
             force,
             offset,

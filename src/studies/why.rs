@@ -68,7 +68,7 @@ pub fn explain(
     let gauge = Gauge::new(increment)?;
     let mut watch = Watch::new(&gauge);
     // A program outside shows nothing, and is not asked twice.
-    if choice.program().is_none() {
+    if choice.is_registered() {
         solver.watched(increment, &mut watch)?;
     }
     let evidence = Evidence {
@@ -108,7 +108,7 @@ pub fn stops(
     solver: &mut Solver<'_>,
     increment: &Increment<'_>,
 ) -> Result<Vec<Stop>, MethodError> {
-    if choice.program().is_some() {
+    if !choice.is_registered() {
         return Ok(Vec::new());
     }
     let posed = Increment {

@@ -266,9 +266,9 @@ fn imports_run_one_way() {
 /// Lines that a room may have, unit tests and the file of its name included: what a change adds it pays for in its room. The
 /// count is that of the default formatting.
 #[rustfmt::skip]
-const BUDGETS: [(&str, usize); 13] = [
-    ("methods/src", 19_245), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2235),
-    ("src/studies", 16_645), ("src/report", 10_530), ("src/cli", 2050), ("benches", 570), ("methods/tests", 3300), ("xfem/tests", 125),
+const BUDGETS: [(&str, usize); 14] = [
+    ("methods/src", 19_245), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2290),
+    ("src/studies", 16_650), ("src/report", 10_530), ("src/cli", 2075), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
     ("tests", 17_970),
 ];
 

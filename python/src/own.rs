@@ -1,0 +1,168 @@
+//! Methods by name, and Python functions as methods: (W, q, mu, tol) -> P, where pieces float
+//! (W, q, mu, tol, V, s) -> (P, λ) with u = W P + V λ + q and Vᵀ P + s = 0.
+
+use std::sync::{Arc, PoisonError};
+use std::time::Instant;
+
+use numpy::ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use stickslip::run::choice::Choice;
+use stickslip::run::outside::outcome;
+use stickslip_methods::{
+    Enforcement, Increment, LocalForm, MethodError, Monitor, Needs, Outcome, SquareMatrix, Status,
+};
+
+use crate::arrays::vector;
+use crate::problem::Raised;
+
+/// A method: `NAME`, `NAME:option=value,…`, `exec:PROGRAM` or a function.
+///
+/// # Errors
+/// None of these.
+pub fn choice(
+    method: &Bound<'_, PyAny>,
+    seconds: Option<f64>,
+    raised: &Raised,
+) -> PyResult<Choice> {
+    let choice = if let Ok(name) = method.extract::<String>() {
+        Choice::parse(&name).map_err(|e| PyValueError::new_err(e.to_string()))?
+    } else if method.is_callable() {
+        let (function, raised) = (Arc::new(method.clone().unbind()), raised.clone());
+        let build = move || -> Box<dyn Enforcement> {
+            Box::new(Function {
+                call: function.clone(),
+                raised: raised.clone(),
+                reported_s: None,
+            })
+        };
+        Choice::own(&label(method)?, Arc::new(build))
+    } else {
+        let text = format!(
+            "method: got {}, allowed: a name or a function",
+            method.get_type()
+        );
+        return Err(PyTypeError::new_err(text));
+    };
+    match seconds {
+        None => Ok(choice),
+        Some(limit) if limit > 0.0 => Ok(choice.limited(limit, None)),
+        Some(limit) => Err(crate::arrays::refused("seconds", limit, "> 0")),
+    }
+}
+
+/// The name of a function in tables.
+fn label(function: &Bound<'_, PyAny>) -> PyResult<String> {
+    for name in ["name", "__name__"] {
+        if let Ok(name) = function.getattr(name).and_then(|name| name.extract()) {
+            return Ok(name);
+        }
+    }
+    Ok(function.get_type().name()?.to_string())
+}
+
+/// A function as a method. Its time is that of the call; what arrays cost is the seam's.
+struct Function {
+    call: Arc<Py<PyAny>>,
+    raised: Raised,
+    reported_s: Option<f64>,
+}
+
+impl Enforcement for Function {
+    fn solve(
+        &mut self,
+        increment: &Increment<'_>,
+        _: &mut dyn Monitor,
+    ) -> Result<Outcome, MethodError> {
+        self.reported_s = None;
+        let form = increment.local_form()?;
+        if form.loose > 0 {
+            return outcome(increment, Status::Mechanism, 0, None);
+        }
+        if form.q.is_empty() {
+            return outcome(increment, Status::Converged, 0, Some((&[], &[])));
+        }
+        let found =
+            Python::attach(|py| self.ask(py, increment, &form).map_err(|e| self.of(py, e)))?;
+        match found {
+            Some((p, rigid)) => outcome(increment, Status::Converged, 1, Some((&p, &rigid))),
+            None => outcome(increment, Status::Unexplained, 1, None),
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::ANY_OPERATOR
+    }
+
+    fn reported_s(&self) -> Option<f64> {
+        self.reported_s
+    }
+}
+
+impl Function {
+    fn ask(
+        &mut self,
+        py: Python<'_>,
+        increment: &Increment<'_>,
+        form: &LocalForm,
+    ) -> PyResult<Option<(Vec<f64>, Vec<f64>)>> {
+        let w = dense(py, &form.w)?;
+        let q = form.q.clone().into_pyarray(py);
+        let mu = increment.system.friction().to_vec().into_pyarray(py);
+        let mut all = vec![
+            w.into_any(),
+            q.into_any(),
+            mu.into_any(),
+            // Half of what is accepted: the rest is for the rounding of the recovery.
+            (0.5 * increment.tolerance).into_pyobject(py)?.into_any(),
+        ];
+        if !form.modes.is_empty() {
+            let v =
+                Array2::from_shape_fn((form.q.len(), form.modes.len()), |(i, j)| form.modes[j][i]);
+            let s: Vec<f64> = form.balance.iter().map(|c| -c).collect();
+            all.extend([v.into_pyarray(py).into_any(), s.into_pyarray(py).into_any()]);
+        }
+        let clock = Instant::now();
+        let found = self.call.bind(py).call1(PyTuple::new(py, all)?)?;
+        self.reported_s = Some(clock.elapsed().as_secs_f64());
+        if found.is_none() {
+            return Ok(None);
+        }
+        let (p, rigid) = match found.cast::<PyTuple>() {
+            Ok(pair) if pair.len() == 2 && !form.modes.is_empty() => {
+                (pair.get_item(0)?, vector("rigid", &pair.get_item(1)?)?)
+            }
+            _ => (found, Vec::new()),
+        };
+        Ok(Some((vector("P", &p)?, rigid)))
+    }
+
+    /// An exception of the function is a crash of the method; Ctrl-C and the like end the run.
+    fn of(&self, py: Python<'_>, error: PyErr) -> MethodError {
+        let reason = error.to_string();
+        if !error.is_instance_of::<PyException>(py) {
+            *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+        }
+        MethodError::Failed { reason }
+    }
+}
+
+/// A square matrix in full.
+///
+/// # Errors
+/// Those of NumPy.
+pub fn dense<'py>(py: Python<'py>, w: &SquareMatrix) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let n = w.size();
+    let mut all = Array2::zeros((n, n));
+    for j in 0..n {
+        for (i, value) in w.column(j) {
+            all[[i, j]] = value;
+            if w.is_symmetric() {
+                all[[j, i]] = value;
+            }
+        }
+    }
+    Ok(all.into_pyarray(py))
+}
