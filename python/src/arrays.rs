@@ -43,9 +43,6 @@ fn real<'py>(name: &str, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDy
 }
 
 /// The entries of an array, row after row.
-///
-/// # Errors
-/// No array of real numbers; entries that are not finite.
 pub fn vector(name: &str, x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = real(name, x)?;
     let shape = array.shape().to_vec();
@@ -76,9 +73,6 @@ fn not_finite(name: &str, at: &str, value: f64) -> PyErr {
 }
 
 /// A vector of so many entries.
-///
-/// # Errors
-/// Those of [`vector`]; another length.
 pub fn vector_of(name: &str, x: &Bound<'_, PyAny>, length: usize) -> PyResult<Vec<f64>> {
     let values = vector(name, x)?;
     if values.len() == length {
@@ -89,9 +83,6 @@ pub fn vector_of(name: &str, x: &Bound<'_, PyAny>, length: usize) -> PyResult<Ve
 }
 
 /// Columns of a matrix with so many rows; one column may come as a vector.
-///
-/// # Errors
-/// Those of [`vector`]; another number of rows.
 pub fn columns(name: &str, x: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<Vec<f64>>> {
     let array = real(name, x)?;
     let shape = array.shape().to_vec();
@@ -107,11 +98,8 @@ pub fn columns(name: &str, x: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<Ve
 
 /// W from a NumPy array or a SciPy matrix: the lower triangle of its symmetric part where it is symmetric up to rounding, all of
 /// it otherwise.
-///
-/// # Errors
-/// Another shape, entries that are not real and finite, one triangle of a matrix.
 pub fn operator(w: &Bound<'_, PyAny>, rows: usize) -> PyResult<SquareMatrix> {
-    if w.hasattr("tocsc")? {
+    if w.hasattr("tocoo")? {
         return sparse(w, rows);
     }
     let array = real("W", w)?;
@@ -171,9 +159,6 @@ fn is_exactly_symmetric(all: &[f64], rows: usize) -> bool {
 }
 
 /// Whether a matrix is symmetric up to rounding; of one that is, the upper triangle stands for both.
-///
-/// # Errors
-/// One triangle of a matrix.
 fn is_nearly_symmetric(all: &[f64], rows: usize) -> PyResult<bool> {
     let (mut largest, mut asymmetry) = (0.0_f64, 0.0_f64);
     let (mut lower, mut upper) = (false, false);
@@ -191,36 +176,18 @@ fn is_nearly_symmetric(all: &[f64], rows: usize) -> PyResult<bool> {
 }
 
 fn sparse(w: &Bound<'_, PyAny>, rows: usize) -> PyResult<SquareMatrix> {
-    let shape: Vec<usize> = w.getattr("shape")?.extract()?;
-    square(&shape, rows)?;
-    let csc = w.call_method0("tocsc")?;
-    let data = vector("W.data", &csc.getattr("data")?)?;
-    let whole = |name: &str| -> PyResult<Vec<i64>> {
-        let array = csc.getattr(name)?.call_method1("astype", ("int64",))?;
-        Ok(array
-            .cast::<PyArray1<i64>>()?
-            .readonly()
-            .as_array()
-            .to_vec())
-    };
-    let (ends, at) = (whole("indptr")?, whole("indices")?);
-    let inside = |k: &i64| usize::try_from(*k).is_ok_and(|k| k <= data.len());
-    let rising = ends.is_sorted() && ends.iter().all(inside) && ends.len() == rows + 1;
-    if !rising || at.len() < data.len() || ends.first() != Some(&0) {
-        return Err(refused(
-            "W",
-            "compressed columns that contradict each other",
-            "a SciPy matrix",
-        ));
-    }
-    let column = |j: usize| {
-        let (data, at) = (&data, &at);
-        let own = ends[j] as usize..ends[j + 1] as usize;
-        own.map(move |k| (usize::try_from(at[k]).unwrap_or(usize::MAX), j, data[k]))
-    };
-    let matrix = SparseMatrix::from_triplets(rows, rows, (0..rows).flat_map(column));
-    let matrix =
-        matrix.ok_or_else(|| refused("W.indices", "a row outside of W", "0 to rows - 1"))?;
+    square(&w.getattr("shape")?.extract::<Vec<usize>>()?, rows)?;
+    let all = w.call_method0("tocoo")?;
+    let data = vector("W.data", &all.getattr("data")?)?;
+    let [at, of] = ["row", "col"].map(|name| -> PyResult<Vec<i64>> {
+        let array = all.getattr(name)?.call_method1("astype", ("int64",))?;
+        Ok(array.cast::<PyArray1<i64>>()?.to_vec()?)
+    });
+    // A negative one lies outside too.
+    let entries = at?.into_iter().zip(of?).zip(data);
+    let entries = entries.map(|((i, j), value)| (i as usize, j as usize, value));
+    let matrix = SparseMatrix::from_triplets(rows, rows, entries);
+    let matrix = matrix.ok_or_else(|| refused("W", "entries outside of it", "a SciPy matrix"))?;
     let [upper, lower] = matrix.sides();
     one_triangle(lower, upper)?;
     let all = matrix.as_square().map_err(|e| failed(&e))?;

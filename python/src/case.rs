@@ -1,29 +1,34 @@
 //! Cases, their runs and their increments as arrays.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use numpy::ToPyArray;
-use numpy::ndarray::Array2;
-use pyo3::exceptions::{PyFileNotFoundError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip::case::{self, Case as Body, shipped};
 use stickslip::files::interchange::{Problem, SparseMatrix, fclib};
 use stickslip::model::body::{self, Needs};
 use stickslip::model::cost::predicted;
-use stickslip::report::standard;
-use stickslip::report::table::{Row, objects};
-use stickslip::report::tables::details::ExpectedNumber;
+use stickslip::report::{Bundle, standard, sweep};
+use stickslip::run::choice::Choice;
 use stickslip::run::progress::Quiet;
 use stickslip::run::provenance::Provenance;
-use stickslip::studies::axes::friction_values;
+use stickslip::run::verdict::Accuracy;
+use stickslip::studies::axes::{Axes, Subject, friction_values, named};
 use stickslip::studies::cases::{Fields, Settings, Why, run_case};
 use stickslip::studies::exchange::export::{Request, export};
 use stickslip::studies::expect;
-use stickslip::studies::results;
+use stickslip::studies::measure::{Bench, Repeats, here};
+use stickslip::studies::record::Record;
+use stickslip::studies::task::Looks;
 
 use crate::own::choice;
-use crate::problem::{Raised, guarded, taken};
+use crate::problem::{Raised, guarded, interruptible, taken, tolerance};
 
 fn told(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
@@ -90,26 +95,69 @@ impl Case {
         Ok(all)
     }
 
-    /// See `stickslip.Case.run`.
-    fn run(
+    /// See `stickslip.Case.run`: files by name.
+    fn run<'py>(
         &self,
-        py: Python<'_>,
-        methods: Vec<Bound<'_, PyAny>>,
+        py: Python<'py>,
+        methods: Methods<'py>,
         seconds: Option<f64>,
-    ) -> PyResult<Results> {
-        let raised = Raised::default();
-        let choices = methods
-            .iter()
-            .map(|method| choice(method, seconds, &raised));
-        let choices = choices.collect::<PyResult<Vec<_>>>()?;
+    ) -> PyResult<Files> {
         let settings = Settings {
             fields: Fields::First,
             why: Why::Cause,
             ..Settings::PLAIN
         };
-        let results = guarded(py, || run_case(&self.0, &choices, settings, &Quiet))?;
-        taken(&raised)?;
-        Ok(Results(results.map_err(told)?))
+        asked(py, methods, seconds, |choices| {
+            let results =
+                run_case(&self.0, choices, settings, &Quiet).map_err(|e| e.to_string())?;
+            standard::bundle(&results, &Provenance::collect(1)).map_err(|e| e.to_string())
+        })
+    }
+
+    /// See `stickslip.Case.study`: files by name.
+    fn study<'py>(
+        &self,
+        py: Python<'py>,
+        methods: Methods<'py>,
+        tolerances: Vec<f64>,
+        seconds: Option<f64>,
+    ) -> PyResult<Files> {
+        let accuracies = tolerances
+            .into_iter()
+            .map(|tol| tolerance(tol).map(Accuracy::exactly));
+        let accuracies = accuracies.collect::<PyResult<Vec<_>>>()?;
+        asked(py, methods, seconds, |choices| {
+            let looks = Looks {
+                error: true,
+                ..Looks::default()
+            };
+            let (axes, mut bench) = (Axes::of(&self.0), Bench::default());
+            let tasks = Subject::given(&self.0).tasks(&axes, &named(choices), &accuracies, looks);
+            let repeats = Some(Repeats::DEFAULT);
+            let answers = here(
+                &mut bench,
+                &tasks,
+                choices,
+                1,
+                repeats,
+                &Quiet,
+                &mut |_, _| (),
+            );
+            let answers = answers.map_err(|e| e.to_string())?.into_iter();
+            let records: Vec<Record> = answers.map(|own| own.record).collect();
+            let bundle = sweep::bundle(&records, records.len(), &Provenance::collect(1));
+            let mut bundle = bundle.map_err(|e| e.to_string())?;
+            let lines = records
+                .iter()
+                .map(|own| serde_json::to_string(own).map(|line| line + "\n"));
+            let lines = lines
+                .collect::<Result<String, _>>()
+                .map_err(|e| e.to_string())?;
+            bundle
+                .add("records/records.jsonl", lines)
+                .map_err(|e| e.to_string())?;
+            Ok(bundle)
+        })
     }
 
     /// See `stickslip.Case.increment`: matrices as (shape, rows, columns, values).
@@ -136,13 +184,10 @@ impl Case {
                     all.set_item("q", problem.q.to_pyarray(py))?;
                     all.set_item("mu", problem.mu.to_pyarray(py))?;
                     all.set_item("P", problem.solution.map(|s| s.r.to_pyarray(py)))?;
-                    let pieces = problem.equality.map(|e| {
-                        let v = Array2::from_shape_fn((problem.q.len(), e.v.cols()), |(i, j)| {
-                            e.v.get(i, j)
-                        });
-                        (v.to_pyarray(py), e.s.to_pyarray(py))
-                    });
-                    all.set_item("pieces", pieces)?;
+                    if let Some(own) = problem.equality {
+                        all.set_item("V", coordinates(py, &own.v)?)?;
+                        all.set_item("s", own.s.to_pyarray(py))?;
+                    }
                 }
                 Problem::Global(problem) => {
                     all.set_item("K", coordinates(py, &problem.m)?)?;
@@ -154,13 +199,6 @@ impl Case {
         }
         Ok(all)
     }
-
-    fn __repr__(&self) -> String {
-        format!(
-            "<case {}, {} increments>",
-            self.0.name, self.0.path.increments
-        )
-    }
 }
 
 /// Shape, rows, columns and values.
@@ -171,56 +209,33 @@ fn coordinates<'py>(py: Python<'py>, m: &SparseMatrix) -> PyResult<Bound<'py, Py
         columns.push(j as i64);
         values.push(value);
     }
-    let shape = (m.rows(), m.cols());
-    let parts = (
-        shape,
-        rows.to_pyarray(py),
-        columns.to_pyarray(py),
-        values.to_pyarray(py),
-    );
+    let [rows, columns] = [rows, columns].map(|own| own.to_pyarray(py));
+    let parts = ((m.rows(), m.cols()), rows, columns, values.to_pyarray(py));
     Ok(parts.into_pyobject(py)?.into_any())
 }
 
-/// What runs of a case gave.
-#[pyclass(frozen, module = "stickslip")]
-pub struct Results(results::Results);
+/// Names and functions.
+type Methods<'py> = Vec<Bound<'py, PyAny>>;
+/// Files by name.
+type Files = BTreeMap<String, Cow<'static, [u8]>>;
 
-#[pymethods]
-impl Results {
-    /// A table as JSON, a row an object.
-    fn table(&self, name: &str) -> PyResult<String> {
-        fn json<R: Row>(rows: &[R]) -> String {
-            serde_json::Value::from_iter(objects(rows)).to_string()
-        }
-        let own = &self.0;
-        Ok(match name {
-            "runs" => json(&standard::runs(own)),
-            "increments" => json(&own.increments()),
-            "quantities" => json(&own.quantities()),
-            "history" => json(&own.history()),
-            "points" => json(&own.points()),
-            "expectations" => json(&ExpectedNumber::of(&own.expectations)),
-            _ => {
-                let known = "runs, increments, quantities, history, points, expectations";
-                return Err(told(format!("table: got {name:?}, allowed: {known}")));
-            }
-        })
+/// Files that somebody makes by some methods, in a thread that Ctrl-C ends at the next iteration.
+fn asked(
+    py: Python<'_>,
+    methods: Methods<'_>,
+    seconds: Option<f64>,
+    make: impl FnOnce(&[Choice]) -> Result<Bundle, String> + Send,
+) -> PyResult<Files> {
+    let (raised, stop) = (Raised::default(), Arc::new(AtomicBool::new(false)));
+    let mut choices = Vec::new();
+    for method in &methods {
+        let mut own = choice(method, seconds, &raised)?;
+        own.stop = stop.clone();
+        choices.push(own);
     }
-
-    /// The figures of `stickslip run` by file name, as SVG.
-    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let bundle = guarded(py, || standard::bundle(&self.0, &Provenance::collect(1)))?;
-        let bundle = bundle.map_err(|e| PyRuntimeError::new_err(e.to_string()))?;
-        let all = PyDict::new(py);
-        for (path, bytes) in bundle.files().filter(|(path, _)| path.ends_with(".svg")) {
-            let name = path.trim_start_matches("figures/");
-            all.set_item(name, String::from_utf8_lossy(bytes))?;
-        }
-        Ok(all)
-    }
-
-    /// One line on all runs.
-    fn __repr__(&self) -> String {
-        format!("<{}>", standard::summary(&self.0))
-    }
+    let bundle = interruptible(py, &stop, || make(&choices))?;
+    taken(&raised)?;
+    let bundle = bundle.map_err(told)?;
+    let file = |(name, bytes): (&str, &[u8])| (name.to_owned(), Cow::Owned(bytes.to_vec()));
+    Ok(bundle.files().map(file).collect())
 }

@@ -9,32 +9,25 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use serde_json::{Value, json};
 use stickslip::run::registry;
-use stickslip_methods::Registry;
+use stickslip_methods::{Method, OptionSpec, Registry};
 
-/// See `stickslip.methods`.
+/// See `stickslip.methods`: as JSON.
 #[pyfunction]
-fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
-    let all = PyList::empty(py);
-    for method in registry::methods() {
-        let (row, options) = (PyDict::new(py), PyList::empty(py));
-        row.set_item("name", method.name)?;
-        row.set_item("summary", method.summary)?;
-        row.set_item("reference", method.reference)?;
-        row.set_item("exact", method.exact)?;
-        for spec in method.options {
-            let option = PyDict::new(py);
-            option.set_item("name", spec.name())?;
-            option.set_item("default", spec.default().number())?;
-            option.set_item("allowed", spec.allowed())?;
-            option.set_item("meaning", spec.help())?;
-            options.append(option)?;
-        }
-        row.set_item("options", options)?;
-        all.append(row)?;
-    }
-    Ok(all)
+fn methods() -> String {
+    let option = |spec: &OptionSpec| {
+        json!({
+            "name": spec.name(), "default": spec.default().number(), "allowed": spec.allowed(), "meaning": spec.help(),
+        })
+    };
+    let method = |own: &&Method| {
+        json!({
+            "name": own.name, "summary": own.summary, "reference": own.reference, "exact": own.exact,
+            "options": own.options.iter().map(option).collect::<Vec<_>>(),
+        })
+    };
+    Value::from_iter(registry::methods().iter().map(method)).to_string()
 }
 
 /// The command-line program: arguments with its name first, and the file that starts it again.
@@ -54,7 +47,6 @@ fn _panic(py: Python<'_>) -> PyResult<()> {
 fn _stickslip(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<problem::Problem>()?;
     module.add_class::<case::Case>()?;
-    module.add_class::<case::Results>()?;
     module.add_function(wrap_pyfunction!(methods, module)?)?;
     module.add_function(wrap_pyfunction!(program, module)?)?;
     module.add_function(wrap_pyfunction!(_panic, module)?)?;

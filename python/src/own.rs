@@ -19,9 +19,6 @@ use crate::arrays::vector;
 use crate::problem::Raised;
 
 /// A method: `NAME`, `NAME:option=value,…`, `exec:PROGRAM` or a function.
-///
-/// # Errors
-/// None of these.
 pub fn choice(
     method: &Bound<'_, PyAny>,
     seconds: Option<f64>,
@@ -38,7 +35,11 @@ pub fn choice(
                 reported_s: None,
             })
         };
-        Choice::own(&label(method)?, Arc::new(build))
+        let name = method
+            .getattr("name")
+            .or_else(|_| method.getattr("__name__"));
+        let name = name.and_then(|name| name.extract::<String>());
+        Choice::own(name.as_deref().unwrap_or("function"), Arc::new(build))
     } else {
         let text = format!(
             "method: got {}, allowed: a name or a function",
@@ -53,16 +54,6 @@ pub fn choice(
     }
 }
 
-/// The name of a function in tables.
-fn label(function: &Bound<'_, PyAny>) -> PyResult<String> {
-    for name in ["name", "__name__"] {
-        if let Ok(name) = function.getattr(name).and_then(|name| name.extract()) {
-            return Ok(name);
-        }
-    }
-    Ok(function.get_type().name()?.to_string())
-}
-
 /// A function as a method. Its time is that of the call; what arrays cost is the seam's.
 struct Function {
     call: Arc<Py<PyAny>>,
@@ -74,9 +65,12 @@ impl Enforcement for Function {
     fn solve(
         &mut self,
         increment: &Increment<'_>,
-        _: &mut dyn Monitor,
+        eyes: &mut dyn Monitor,
     ) -> Result<Outcome, MethodError> {
         self.reported_s = None;
+        if !eyes.step(0, f64::NAN) {
+            return outcome(increment, Status::Stopped, 0, None);
+        }
         let form = increment.local_form()?;
         if form.loose > 0 {
             return outcome(increment, Status::Mechanism, 0, None);
@@ -150,9 +144,6 @@ impl Function {
 }
 
 /// A square matrix in full.
-///
-/// # Errors
-/// Those of NumPy.
 pub fn dense<'py>(py: Python<'py>, w: &SquareMatrix) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let n = w.size();
     let mut all = Array2::zeros((n, n));

@@ -1,13 +1,14 @@
 //! A contact problem of arrays: u = W P + V λ + q, Vᵀ P + s = 0, with the contact laws at every point.
 
+use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use numpy::ToPyArray;
+use numpy::IntoPyArray;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use stickslip::run::judged::{JudgedIncrement, Seconds};
 use stickslip::run::path::Solver;
 use stickslip::run::verdict::Verdict;
@@ -26,7 +27,7 @@ use crate::own::choice;
 const MOST_MOTIONS: usize = 60;
 
 /// Time between two looks at signals: each takes the interpreter's lock.
-const BETWEEN: Duration = Duration::from_millis(20);
+const BETWEEN: Duration = Duration::from_millis(10);
 
 /// What Python raised while a method ran.
 pub type Raised = Arc<Mutex<Option<PyErr>>>;
@@ -91,7 +92,7 @@ impl Problem {
         tol: f64,
         callback: Option<Py<PyAny>>,
         seconds: Option<f64>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (raised, tol) = (Raised::default(), tolerance(tol)?);
         let choice = choice(method, seconds, &raised)?;
         let mut eyes = Eyes {
@@ -132,7 +133,7 @@ impl Problem {
         p: &Bound<'py, PyAny>,
         rigid: Option<&Bound<'py, PyAny>>,
         tol: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let tol = tolerance(tol)?;
         let p = vector_of("P", p, self.loads[1].offset.len())?;
         let rigid = rigid
@@ -211,7 +212,7 @@ impl Problem {
 }
 
 /// Tolerances that can be asked for.
-fn tolerance(tol: f64) -> PyResult<f64> {
+pub fn tolerance(tol: f64) -> PyResult<f64> {
     match tol {
         1e-14..=1e-3 => Ok(tol),
         _ => Err(refused("tol", tol, "1e-14 to 1e-3")),
@@ -241,32 +242,26 @@ fn motions(pieces: &Bound<'_, PyAny>, rows: usize) -> PyResult<(Vec<Vec<f64>>, V
 /// Components of a point and the coefficient of every point.
 fn friction(mu: &Bound<'_, PyAny>, dim: Option<usize>, rows: usize) -> PyResult<(usize, Vec<f64>)> {
     let one = mu.extract::<f64>().ok();
-    let mut mu = match one {
-        Some(mu) => vec![mu],
-        None => vector("mu", mu)?,
-    };
-    if let Some(k) = mu.iter().position(|m| !(m.is_finite() && *m >= 0.0)) {
-        let at = if one.is_some() {
-            String::new()
-        } else {
-            format!("[{k}]")
-        };
-        return Err(refused(&format!("mu{at}"), mu[k], "finite numbers >= 0"));
+    let given = one.map_or_else(|| vector("mu", mu), |mu| Ok(vec![mu]))?;
+    if let Some(k) = given.iter().position(|m| !(m.is_finite() && *m >= 0.0)) {
+        let at = one.map_or_else(|| format!("[{k}]"), |_| String::new());
+        return Err(refused(&format!("mu{at}"), given[k], "finite numbers >= 0"));
     }
+    let count = |allowed: &str| refused("mu", format!("{} numbers", given.len()), allowed);
     let dim = match dim {
         Some(dim @ (2 | 3)) => dim,
         Some(other) => return Err(refused("dim", other, "2 or 3")),
         None if one.is_some() => {
-            let allowed = "2 or 3, where mu is one number for all points";
-            return Err(refused("dim", "None", allowed));
+            return Err(refused(
+                "dim",
+                "None",
+                "2 or 3, where mu is one number for all points",
+            ));
         }
-        None => match [2, 3].into_iter().find(|dim| dim * mu.len() == rows) {
-            Some(dim) => dim,
-            None => {
-                let allowed = format!("one per point: {rows} numbers of q over 2 or 3");
-                return Err(refused("mu", format!("{} numbers", mu.len()), &allowed));
-            }
-        },
+        None => [2, 3]
+            .into_iter()
+            .find(|dim| dim * given.len() == rows)
+            .ok_or_else(|| count(&format!("one per point: {rows} numbers of q over 2 or 3")))?,
     };
     if !rows.is_multiple_of(dim) {
         return Err(refused(
@@ -275,22 +270,18 @@ fn friction(mu: &Bound<'_, PyAny>, dim: Option<usize>, rows: usize) -> PyResult<
             &format!("a multiple of dim = {dim}"),
         ));
     }
-    if one.is_some() {
-        mu = vec![mu[0]; rows / dim];
+    match one {
+        Some(mu) => Ok((dim, vec![mu; rows / dim])),
+        None if given.len() * dim == rows => Ok((dim, given)),
+        None => Err(count(&format!("{}, one per point", rows / dim))),
     }
-    if mu.len() * dim != rows {
-        let allowed = format!("{}, one per point", rows / dim);
-        return Err(refused("mu", format!("{} numbers", mu.len()), &allowed));
-    }
-    Ok((dim, mu))
 }
 
-/// What was found, by the names of the fields of `stickslip.Answer`.
-fn told<'py>(py: Python<'py>, method: &str, found: Found) -> PyResult<Bound<'py, PyDict>> {
+/// What was found, in the order of the fields of `stickslip.Answer`.
+fn told<'py>(py: Python<'py>, method: &str, found: Found) -> PyResult<Bound<'py, PyAny>> {
     let (verdict, found, seconds) = found;
-    let (all, violations, counters) = (PyDict::new(py), PyDict::new(py), PyDict::new(py));
     let (mut claim, mut states, mut history) = (String::new(), Vec::new(), Vec::new());
-    let [mut p, mut jump] = [Vec::new(), Vec::new()];
+    let [mut p, mut jump, mut judged] = [Vec::new(), Vec::new(), Vec::new()];
     let mut work = Counters::default();
     if let Some((outcome, r, status, v)) = found {
         claim = match (&outcome.status, outcome.claim) {
@@ -298,60 +289,73 @@ fn told<'py>(py: Python<'py>, method: &str, found: Found) -> PyResult<Bound<'py,
             (Status::Converged, _) => "own laws".into(),
             (status, _) => status.to_string(),
         };
-        for (name, value) in [
-            ("violation", r.violation),
-            ("natural_map", r.natural_map),
-            ("penetration", r.penetration),
-            ("adhesion", r.adhesion),
-            ("complementarity", r.complementarity),
-            ("cone", r.cone),
-            ("slip_direction", r.slip_direction),
-            ("equilibrium", r.equilibrium),
-            ("claimed", r.claimed),
-            ("reference_force", r.reference_force),
-            ("reference_jump", r.reference_jump),
-        ] {
-            violations.set_item(name, value)?;
-        }
+        judged.extend([
+            r.violation,
+            r.natural_map,
+            r.penetration,
+            r.adhesion,
+            r.complementarity,
+        ]);
+        judged.extend([r.cone, r.slip_direction, r.equilibrium, r.claimed]);
+        judged.extend([r.reference_force, r.reference_jump]);
         states = status.iter().map(|own| own.as_str()).collect();
         history = outcome.history.iter().map(|own| own.violation).collect();
         (p, jump, work) = (outcome.state.p, v, outcome.counters);
     }
-    for (name, value) in [
-        ("iterations", work.iterations),
-        ("factorisations", work.factorisations),
-        ("solves", work.solves),
-        ("local_solves", work.local_solves),
-    ] {
-        counters.set_item(name, value)?;
-    }
-    all.set_item("method", method)?;
-    all.set_item("verdict", verdict.to_string())?;
-    all.set_item("solved", verdict.is_solved())?;
-    all.set_item("claim", claim)?;
-    all.set_item("P", p.to_pyarray(py))?;
-    all.set_item("jump", jump.to_pyarray(py))?;
-    all.set_item("states", states)?;
-    all.set_item("violations", violations)?;
-    all.set_item("counters", counters)?;
-    all.set_item("seconds", seconds.enforcement_s)?;
-    all.set_item("reported_seconds", seconds.reported_s)?;
-    all.set_item("history", history.to_pyarray(py))?;
-    Ok(all)
+    let Counters {
+        iterations,
+        factorisations,
+        solves,
+        local_solves,
+        ..
+    } = work;
+    let answer = (
+        (method, verdict.to_string(), verdict.is_solved(), claim),
+        (p.into_pyarray(py), jump.into_pyarray(py), states, judged),
+        [iterations, factorisations, solves, local_solves],
+        (
+            seconds.enforcement_s,
+            seconds.reported_s,
+            history.into_pyarray(py),
+        ),
+    );
+    Ok(answer.into_pyobject(py)?.into_any())
 }
 
 /// Runs a computation without the interpreter's lock; a panic of it is an exception.
-///
-/// # Errors
-/// That exception.
 pub fn guarded<T: Send>(py: Python<'_>, call: impl FnOnce() -> T + Send) -> PyResult<T> {
     let done = py.detach(|| catch_unwind(AssertUnwindSafe(call)));
-    done.map_err(|panic| {
-        let literal = panic.downcast_ref::<&str>().copied();
-        let text = panic.downcast_ref::<String>().map(String::as_str);
-        let what = literal.or(text).unwrap_or("of unknown kind");
-        PyRuntimeError::new_err(format!("internal error: {what}"))
+    done.map_err(|panic| internal(&*panic))
+}
+
+/// The same in a thread of its own, for what shows no iterations: this one looks for Ctrl-C and sets `stop`.
+pub fn interruptible<T: Send>(
+    py: Python<'_>,
+    stop: &AtomicBool,
+    call: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    std::thread::scope(|scope| {
+        let (done, mut interrupted) =
+            (scope.spawn(|| catch_unwind(AssertUnwindSafe(call))), Ok(()));
+        while !done.is_finished() {
+            py.detach(|| std::thread::sleep(BETWEEN));
+            interrupted = interrupted.and_then(|()| py.check_signals());
+            stop.store(interrupted.is_err(), Ordering::Relaxed);
+        }
+        let found = done
+            .join()
+            .unwrap_or_else(Err)
+            .map_err(|panic| internal(&*panic));
+        interrupted.and(found)
     })
+}
+
+/// A panic as an exception.
+fn internal(panic: &(dyn Any + Send)) -> PyErr {
+    let literal = panic.downcast_ref::<&str>().copied();
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let what = literal.or(text).unwrap_or("of unknown kind");
+    PyRuntimeError::new_err(format!("internal error: {what}"))
 }
 
 /// Shows iterations to a callback, and lets Ctrl-C through.

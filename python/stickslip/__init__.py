@@ -17,7 +17,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -30,9 +30,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import _stickslip
 from ._stickslip import __version__
 
-__all__ = ["Answer", "Case", "Figure", "Folder", "Results", "compare", "judge", "load", "method", "methods", "solve", "study",
+__all__ = ["Answer", "Case", "Figure", "Results", "compare", "judge", "load", "method", "methods", "solve", "study",
            "__version__"]
-
 
 Method: TypeAlias = str | Callable[..., Any]
 Pieces: TypeAlias = tuple[ArrayLike, ArrayLike]
@@ -102,6 +101,17 @@ class Answer:
         return "<table>" + "".join(f"<tr><th>{name}</th><td>{escape(value)}</td></tr>" for name, value in rows) + "</table>"
 
 
+_JUDGED = ("violation", "natural_map", "penetration", "adhesion", "complementarity", "cone", "slip_direction", "equilibrium",
+           "claimed", "reference_force", "reference_jump")
+_WORK = ("iterations", "factorisations", "solves", "local_solves")
+
+
+def _answer(parts: Any, again: tuple[_stickslip.Problem, Method, float] | None = None) -> Answer:
+    said, (P, jump, states, judged), work, spent = parts
+    fields: tuple[Any, ...] = (*said, P, jump, states, dict(zip(_JUDGED, judged)), dict(zip(_WORK, work)), *spent, again)
+    return Answer(*fields)
+
+
 def solve(W: Any, q: ArrayLike, mu: ArrayLike, *, method: Method = "hybrid", tol: float = 1e-9, start: ArrayLike | None = None,
           dim: int | None = None, pieces: Pieces | None = None, callback: Callable[[int, float], object] | None = None,
           seconds: float | None = None) -> Answer:
@@ -116,18 +126,19 @@ def solve(W: Any, q: ArrayLike, mu: ArrayLike, *, method: Method = "hybrid", tol
     exception: see `Answer.verdict`, `Answer.cause`, `Answer.remedy`.
     """
     problem = _stickslip.Problem(W, q, mu, dim, pieces, start)
-    return Answer(**problem.solve(method, tol, callback, seconds), _again=(problem, method, tol))
+    return _answer(problem.solve(method, tol, callback, seconds), (problem, method, tol))
 
 
 def judge(W: Any, q: ArrayLike, mu: ArrayLike, P: ArrayLike, *, tol: float = 1e-9, dim: int | None = None,
           pieces: Pieces | None = None, rigid: ArrayLike | None = None) -> Answer:
     """The verdict on anybody's contact forces P (n,): `solved`, or `false-claim`. rigid: λ (k,) where pieces float."""
-    return Answer(**_stickslip.Problem(W, q, mu, dim, pieces, None).judge(P, rigid, tol))
+    return _answer(_stickslip.Problem(W, q, mu, dim, pieces, None).judge(P, rigid, tol))
 
 
 def methods() -> list[dict[str, Any]]:
     """All methods: dicts with name, summary, reference, exact, options."""
-    return _stickslip.methods()
+    found: list[dict[str, Any]] = json.loads(_stickslip.methods())
+    return found
 
 
 def compare(W: Any, q: ArrayLike, mu: ArrayLike, methods: Iterable[Method] | None = None,
@@ -135,9 +146,9 @@ def compare(W: Any, q: ArrayLike, mu: ArrayLike, methods: Iterable[Method] | Non
             seconds: float | None = None) -> list[dict[str, Any]]:
     """Runs methods (all by default) at tolerances: a list of dicts, one a run, as `pandas.DataFrame` takes them."""
     if methods is None:
-        methods = [row["name"] for row in _stickslip.methods()]
+        methods = [row["name"] for row in globals()["methods"]()]
     problem, tols = _stickslip.Problem(W, q, mu, dim, pieces, None), list(tols)
-    answers = [(tol, Answer(**problem.solve(method, tol, None, seconds))) for method in methods for tol in tols]
+    answers = [(tol, _answer(problem.solve(method, tol, None, seconds))) for method in methods for tol in tols]
     return [
         {"method": a.method, "tol": tol, "verdict": a.verdict, "violation": a.violation, "iterations": a.iterations,
          "factorisations": a.counters["factorisations"], "seconds": a.seconds, "reported_seconds": a.reported_seconds}
@@ -146,7 +157,7 @@ def compare(W: Any, q: ArrayLike, mu: ArrayLike, methods: Iterable[Method] | Non
 
 
 class method:
-    """Decorator: makes a function (W, q, mu, tol) -> P a method for `solve`, `compare` and `Case.run`.
+    """Decorator: makes a function (W, q, mu, tol) -> P a method, `own:NAME`, of `solve`, `compare`, `Case.run` and `Case.study`.
 
     W (n, n), q (n,), mu (points,); None gives up. Where pieces float it is called with V (n, k), s (k,) besides and returns
     (P, λ). Its answer is judged and timed like any other; `Answer.reported_seconds` is the time inside the call.
@@ -170,32 +181,49 @@ class Figure:
     def _repr_svg_(self) -> str:
         return self.svg
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes it to a file."""
-        Path(path).write_text(self.svg, encoding="utf-8")
-
-
-def _columns(rows: Sequence[dict[str, Any]]) -> Columns:
-    return {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
-
 
 class Results:
-    """What runs of a case gave: tables by name as columns, figures by file name."""
+    """Tables as columns, figures, records of a study, and all files (VTU fields too) of runs."""
 
-    def __init__(self, inner: _stickslip.Results) -> None:
-        self._inner = inner
+    def __init__(self, files: dict[str, bytes]) -> None:
+        self.files = files
+
+    @property
+    def tables(self) -> list[str]:
+        """Names of its tables."""
+        return [name[:-4] for name in sorted(self.files) if name.endswith(".csv")]
 
     def table(self, name: str) -> Columns:
-        """`runs`, `increments`, `quantities`, `history`, `points` or `expectations`: a dict of columns."""
-        return _columns(json.loads(self._inner.table(name)))
+        """A table as a dict of columns; cells that are numbers are numbers. What they mean: `stickslip show schema`."""
+        if name not in self.tables:
+            raise ValueError(f"table: got {name!r}, allowed: {', '.join(self.tables)}")
+
+        def cell(text: str) -> float | str:
+            try:
+                return float(text)
+            except ValueError:
+                return text
+
+        header, *rows = csv.reader(self.files[f"{name}.csv"].decode().splitlines())
+        return {key: [cell(row[k]) for row in rows] for k, key in enumerate(header)}
 
     @property
     def figures(self) -> dict[str, Figure]:
         """Figures by file name."""
-        return {name: Figure(svg) for name, svg in self._inner.figures().items()}
+        return {Path(name).name: Figure(svg.decode()) for name, svg in sorted(self.files.items()) if name.endswith(".svg")}
 
-    def __repr__(self) -> str:
-        return repr(self._inner)
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """All records of a study, the last of every task."""
+        lines = [line for name in sorted(self.files) if name.endswith(".jsonl") for line in self.files[name].split(b"\n")[:-1]]
+        return list({record["id"]: record for record in map(json.loads, lines)}.values())
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Writes all files."""
+        for name, contents in self.files.items():
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(contents)
 
 
 class Case:
@@ -225,70 +253,39 @@ class Case:
         """Follows the load path by every method, functions included, and judges every increment."""
         return Results(self._inner.run(list(methods), seconds))
 
+    def study(self, methods: Iterable[Method] = ("hybrid",), tolerances: Iterable[float] = (1e-3, 1e-6, 1e-9), *,
+              seconds: float | None = None) -> Results:
+        """Methods, functions included, at tolerances, repeated in turn for their times: figures of time against error."""
+        return Results(self._inner.study(list(methods), list(tolerances), seconds))
+
     def increment(self, number: int | None = None, *, friction: float | None = None, method: Method = "hybrid") -> dict[str, Any]:
-        """One increment (the last by default) as arrays: K, B, W (SciPy CSR), f, offset, q, mu, P, pieces, dim."""
+        """One increment (the last by default) as arrays: K, B, W (SciPy CSR), f, offset, q, mu, P, dim, pieces."""
         from scipy.sparse import csr_array  # type: ignore[import-untyped]
 
         found = self._inner.increment(self.increments if number is None else number, friction, method)
-        for name in ("K", "B", "W"):
-            if name in found:
-                shape, rows, columns, values = found[name]
-                found[name] = csr_array((values, (rows, columns)), shape=shape)
+        for name in {"K", "B", "W", "V"} & found.keys():
+            shape, rows, columns, values = found[name]
+            found[name] = csr_array((values, (rows, columns)), shape=shape)
+        found["pieces"] = (found.pop("V").toarray(), found.pop("s")) if "V" in found else None
         return found
 
     def __repr__(self) -> str:
-        return repr(self._inner)
+        return f"<case {self.name}, {self.increments} increments>"
 
 
-class Folder:
-    """A folder of results: records of a study, its tables and figures."""
-
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = Path(path)
-        if not self.path.is_dir():
-            raise FileNotFoundError(f"folder: got {str(self.path)!r}, allowed: a folder of results")
-
-    @property
-    def records(self) -> list[dict[str, Any]]:
-        """All records, the last of every task."""
-        found: dict[str, dict[str, Any]] = {}
-        for file in sorted(self.path.glob("records/*.jsonl")):
-            for line in file.read_text(encoding="utf-8").split("\n")[:-1]:
-                record = json.loads(line)
-                found[record["id"]] = record
-        return list(found.values())
-
-    @property
-    def tables(self) -> list[str]:
-        """Names of its tables."""
-        return sorted(file.stem for file in self.path.glob("*.csv"))
-
-    def table(self, name: str) -> Columns:
-        """A table as columns; cells that are numbers are numbers."""
-        def cell(text: str) -> float | str:
-            try:
-                return float(text)
-            except ValueError:
-                return text
-
-        with open(self.path / f"{name}.csv", newline="", encoding="utf-8") as file:
-            return _columns([{key: cell(text) for key, text in row.items()} for row in csv.DictReader(file)])
-
-    @property
-    def figures(self) -> dict[str, Figure]:
-        """Figures by file name."""
-        return {file.name: Figure(file.read_text(encoding="utf-8")) for file in sorted(self.path.glob("figures/*.svg"))}
-
-
-def load(folder: str | os.PathLike[str]) -> Folder:
-    """The results in a folder."""
-    return Folder(folder)
+def load(folder: str | os.PathLike[str]) -> Results:
+    """Tables, figures and records in a folder of results."""
+    path = Path(folder)
+    if not path.is_dir():
+        raise FileNotFoundError(f"folder: got {str(path)!r}, allowed: a folder of results")
+    files = [file for kind in ("*.csv", "figures/*.svg", "records/*.jsonl") for file in path.glob(kind)]
+    return Results({file.relative_to(path).as_posix(): file.read_bytes() for file in files})
 
 
 def study(cases: Iterable[str | os.PathLike[str]], methods: Iterable[str] = ("hybrid",),
-          tolerances: Iterable[float] = (1e-3, 1e-6, 1e-9), *, out: str | os.PathLike[str], timed: bool = True) -> Folder:
+          tolerances: Iterable[float] = (1e-3, 1e-6, 1e-9), *, out: str | os.PathLike[str], timed: bool = True) -> Results:
     """Measures methods on cases (names or files) at tolerances, in processes of their own: `stickslip study`. Ctrl-C keeps what
-    is measured; the same call goes on from there. Returns the folder `out`."""
+    is measured; the same call goes on from there. Returns what lies in `out`."""
     quoted = [json.dumps(str(Path(case).resolve()) if Path(case).exists() else str(case)) for case in cases]
     text = (f'title = "study"\n[[cells]]\ncases = [{", ".join(quoted)}]\nmethods = {json.dumps(list(methods))}\n'
             f"tolerances = [{', '.join(f'{tol:e}' for tol in tolerances)}]\n")
@@ -299,4 +296,4 @@ def study(cases: Iterable[str | os.PathLike[str]], methods: Iterable[str] = ("hy
         done = subprocess.run(command + ([] if timed else ["--untimed"]), stderr=subprocess.PIPE, text=True)
     if done.returncode == 2:
         raise ValueError(done.stderr.strip())
-    return Folder(out)
+    return load(out)

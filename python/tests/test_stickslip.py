@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -118,7 +119,7 @@ def test_functions_are_methods_and_their_time_is_their_own():
         return known
 
     answer = stickslip.solve(W, q, mu, method=oracle)
-    assert answer.method == "oracle" and answer.solved and 0 < answer.reported_seconds < answer.seconds
+    assert answer.method == "own:oracle" and answer.solved and 0 < answer.reported_seconds < answer.seconds
     rows = stickslip.compare(W, q, mu, methods=[oracle, "hybrid"], tols=[1e-9])
     assert [row["verdict"] for row in rows] == ["solved", "solved"] and rows[1]["reported_seconds"] is None
     wrong = {"false-claim": lambda *a: 0 * known, "gave-up: unexplained": lambda *a: None,
@@ -145,27 +146,29 @@ def test_a_callback_sees_iterations_and_may_end_them():
 
 
 def test_ctrl_c_ends_a_run():
+    # What runs in the background of a shell ignores it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     W, q, mu = posed(300, mu=0.9)
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         for _ in range(1000):
             stickslip.solve(W, q, mu, method="projection:max_iterations=1000000", tol=1e-14)
+    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        stickslip.Case("partial_slip_cycle").run([f"nsgs:max_iterations={n}" for n in range(100_000, 101_000)])
+    assert time.monotonic() - begin < 5.0
 
 
 def test_other_threads_run_while_a_method_does():
     W, q, mu = posed(250)
     ticks, done = [], threading.Event()
-
-    def tick():
-        while not done.wait(0.001):
-            ticks.append(1)
-
-    thread = threading.Thread(target=tick)
+    thread = threading.Thread(target=lambda: ticks.extend(iter(lambda: done.wait(0.001), True)))
     thread.start()
-    answer = stickslip.solve(W, q, mu, method="nsgs", tol=1e-12)
+    spent = sum(stickslip.solve(W, q, mu, method="nsgs", tol=1e-12).seconds for _ in range(20))
     done.set()
     thread.join()
-    assert len(ticks) > 50 * answer.seconds
+    assert len(ticks) > 20 * spent
 
 
 def test_a_panic_is_an_exception():
@@ -175,29 +178,23 @@ def test_a_panic_is_an_exception():
 
 REFUSED = [
     (dict(W=np.eye(3)), r"W: got shape \[3, 3\], allowed: \(4, 4\)"),
-    (dict(W=np.zeros((4, 4, 1))), r"W: got shape"),
     (dict(W=np.where(np.eye(4) > 0, np.nan, 0)), r"W\[0, 0\]: got NaN, allowed: finite"),
     (dict(W=np.eye(4) + np.diag([1, 1, np.inf], -1)), r"W\[3, 2\]: got inf"),
     (dict(W=np.eye(4, dtype=complex)), r"W: got dtype complex128"),
-    (dict(W=[["a"] * 4] * 4), r"W: got dtype <U1"),
     (dict(W=[[1.0], [1.0, 2.0]]), r"W: got"),
     (dict(W=np.tril(np.ones((4, 4)))), r"W: got one triangle"),
     (dict(W=sp.csr_array(np.tril(np.ones((4, 4))))), r"W: got one triangle"),
     (dict(W=sp.csr_array(np.diag([1.0, np.nan, 1.0, 1.0]))), r"W.data\[1\]: got NaN"),
-    (dict(W=None), r"W: got dtype object"),
     (dict(q=[1.0, np.nan, 0.0, 0.0]), r"q\[1\]: got NaN"),
     (dict(q=[[0.0, 1.0], [np.inf, 0.0]]), r"q\[1, 0\]: got inf"),
     (dict(q=[0.0] * 5), r"mu: got 2 numbers, allowed: one per point"),
     (dict(mu=[0.3, -0.1]), r"mu\[1\]: got -0.1, allowed: finite numbers >= 0"),
     (dict(mu=0.3), r"dim: got None, allowed: 2 or 3"),
     (dict(mu=0.3, dim=4), r"dim: got 4, allowed: 2 or 3"),
-    (dict(mu=[0.3] * 3), r"mu: got 3 numbers"),
     (dict(tol=0.0), r"tol: got 0, allowed: 1e-14 to 1e-3"),
-    (dict(tol=np.nan), r"tol: got NaN"),
     (dict(start=[0.0]), r"start: got 1 numbers, allowed: 4"),
     (dict(method="newton"), r"unknown method `newton`"),
     (dict(method="nsgs:max_iterations=-1"), r"max_iterations"),
-    (dict(method=3), r"method: got"),
     (dict(seconds=-1.0), r"seconds: got -1"),
     (dict(pieces=np.eye(4)), r"pieces: got"),
     (dict(pieces=(np.ones((3, 1)), [1.0])), r"V: got shape \[3, 1\], allowed: 4 rows"),
@@ -281,8 +278,7 @@ def test_a_case_may_be_a_dict_or_a_file_and_its_faults_are_told(tmp_path):
             "mesh": {"box": {"min_m": [0, 0], "max_m": [2, 1], "cells": [9, 5]}},
             "crack": [{"points_m": [[-1.0, 0.47], [3.0, 0.52]], "friction": 0.4}],
             "support": [{"on": "bottom", "displacement_m": [0, 0]}, {"on": "top", "displacement_m": [1e-4, -1e-3]}]}
-    table = stickslip.Case(text).run(["hybrid"]).table("runs")
-    assert table["verdict"] == ["solved"]
+    assert stickslip.Case(text).run(["hybrid"]).table("runs")["verdict"] == ["solved"]
     with pytest.raises(ValueError, match="material.poisson: out of range: got 0.75, allowed: 0 <= poisson < 0.5"):
         stickslip.Case({**text, "material": {"young_pa": 1e9, "poisson": 0.75}})
     with pytest.raises(FileNotFoundError, match="nowhere.toml"):
@@ -293,6 +289,8 @@ def test_a_case_may_be_a_dict_or_a_file_and_its_faults_are_told(tmp_path):
 
 
 def test_a_study_is_measured_and_read_back(tmp_path):
+    own = stickslip.Case("plate_mesh1").study([stickslip.method(lambda W, q, mu, tol: stickslip.solve(W, q, mu).P, "mine")], [1e-6])
+    assert [record["found"]["verdict"] for record in own.records] == ["solved"] * 3 and own.figures
     folder = stickslip.study(["plate_mesh1"], ["hybrid", "latin"], [1e-3, 1e-9], out=tmp_path / "study", timed=False)
     records = folder.records
     assert len(records) == 12 and {record["found"]["verdict"] for record in records} == {"solved"}
@@ -339,6 +337,6 @@ def test_examples_run(name, tmp_path):
 
 def test_types_are_right():
     pytest.importorskip("mypy")
-    command = [sys.executable, "-m", "mypy", "--strict", "stickslip", "examples"]
-    done = subprocess.run(command, cwd=HERE.parent, capture_output=True, text=True)
+    asked = [sys.executable, "-m", "mypy", "--strict", "stickslip", "examples"]
+    done = subprocess.run(asked, cwd=HERE.parent, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout

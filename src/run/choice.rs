@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use stickslip_methods::{Enforcement, Method, OptionError, OptionSpec, OptionValue, Options};
@@ -18,6 +19,8 @@ pub struct Choice {
     source: Source,
     /// Time for an increment [s].
     pub seconds: f64,
+    /// Set from outside to end runs at their next iteration.
+    pub stop: Arc<AtomicBool>,
     /// Name in tables: registry name, changed options in brackets; of a program `exec:` and the name of its file.
     pub label: String,
 }
@@ -59,6 +62,7 @@ impl Choice {
             source,
             label,
             seconds: SECONDS,
+            stop: Arc::default(),
         })
     }
 
@@ -93,11 +97,12 @@ impl Choice {
     }
 
     /// A method that whoever embeds the program brings along, taken for one that solves the contact laws.
-    pub fn own(label: &str, build: Build) -> Self {
+    pub fn own(name: &str, build: Build) -> Self {
         Choice {
-            label: label.to_owned(),
+            label: format!("{OWN}{name}"),
             source: Source::Own(build),
             seconds: SECONDS,
+            stop: Arc::default(),
         }
     }
 
@@ -110,6 +115,7 @@ impl Choice {
             label: format!("{OUTSIDE}{}", program.name()),
             source: Source::Outside(program),
             seconds: SECONDS,
+            stop: Arc::default(),
         })
     }
 
@@ -213,9 +219,12 @@ pub fn seen_from(folder: &Path, argument: &str) -> String {
     }
 }
 
-/// Whether a label or an argument names a program.
+/// Beginning of the label of a method that whoever embeds the program brings along.
+const OWN: &str = "own:";
+
+/// Whether a label or an argument names a method that is not in the registry.
 pub fn is_outside(method: &str) -> bool {
-    method.starts_with(OUTSIDE)
+    [OUTSIDE, OWN].iter().any(|begin| method.starts_with(begin))
 }
 
 /// The options that differ from their defaults, in the order of the method: the same settings give the same text.

@@ -1,6 +1,8 @@
 //! One method along a load path: increment after increment, each from the state in which the one before ended, solved, timed and
 //! judged. Cases, files and random problems go through here alike.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use stickslip_methods::{
@@ -163,8 +165,9 @@ fn with_mechanics(
 pub struct Solver<'a> {
     system: &'a ContactSystem,
     method: Box<dyn Enforcement>,
-    /// Time for an increment [s].
+    /// Time for an increment [s], and what else ends it.
     seconds: f64,
+    stop: Arc<AtomicBool>,
     /// Time the preparation took, until an increment counted it [s].
     pub prepare_s: f64,
 }
@@ -185,6 +188,7 @@ impl<'a> Solver<'a> {
             system,
             method,
             seconds: choice.seconds,
+            stop: choice.stop.clone(),
             prepare_s: prepare.total_s,
         })
     }
@@ -202,7 +206,12 @@ impl<'a> Solver<'a> {
     ) -> (Result<Outcome, MethodError>, Seconds) {
         // What every method and the judge begin with is no method's time; if it fails, so will they.
         let _ = self.system.elastic().free(&increment.load.force);
-        let mut deadline = Deadline(Instant::now(), self.seconds, eyes);
+        let mut deadline = Deadline {
+            begin: Instant::now(),
+            seconds: self.seconds,
+            stop: &self.stop,
+            eyes,
+        };
         let solve = || self.method.solve(increment, &mut deadline);
         let (outcome, mut seconds) = timed(self.system, solve);
         seconds.reported_s = self.method.reported_s();
@@ -278,12 +287,18 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// Stops a method that takes more than so many seconds, or that another monitor stops.
-struct Deadline<'a>(Instant, f64, &'a mut dyn Monitor);
+/// Stops a method that takes more than so many seconds, or that somebody else stops.
+struct Deadline<'a> {
+    begin: Instant,
+    seconds: f64,
+    stop: &'a AtomicBool,
+    eyes: &'a mut dyn Monitor,
+}
 
 impl Monitor for Deadline<'_> {
     fn step(&mut self, iteration: usize, violation: f64) -> bool {
-        self.2.step(iteration, violation) && self.0.elapsed().as_secs_f64() < self.1
+        let goes_on = self.eyes.step(iteration, violation) && !self.stop.load(Ordering::Relaxed);
+        goes_on && self.begin.elapsed().as_secs_f64() < self.seconds
     }
 }
 

@@ -267,7 +267,7 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 14] = [
-    ("methods/src", 19_245), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2290),
+    ("methods/src", 19_245), ("xfem/src", 22_385), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2315),
     ("src/studies", 16_650), ("src/report", 10_530), ("src/cli", 2075), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
     ("tests", 17_970),
 ];

@@ -210,7 +210,7 @@ pub fn rank(label: &str) -> usize {
     methods().iter().position(own).unwrap_or(methods().len())
 }
 
-/// Whether the method solves the contact laws themselves, as programs from outside are to; false for what the registry does
+/// Whether the method solves the contact laws themselves, as those from outside are to; false for what the registry does
 /// not know.
 pub fn is_exact(label: &str) -> bool {
     let known = methods().get(rank(label));
