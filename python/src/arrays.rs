@@ -25,18 +25,21 @@ pub fn failed(error: &MethodError) -> PyErr {
 
 /// An array of float64, that of the caller where it is one.
 fn real<'py>(name: &str, x: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let allowed = "an array of real numbers";
+    let other =
+        |got: String| PyTypeError::new_err(format!("{name}: got {got}, allowed: {allowed}"));
+    if x.get_type().name()? == "MaskedArray" {
+        return Err(other("a masked array".into()));
+    }
     if let Ok(array) = x.cast::<PyArrayDyn<f64>>() {
         return Ok(array.clone());
     }
-    let allowed = "an array of real numbers";
-    let numpy = x.py().import("numpy")?;
     let ragged = |e: PyErr| refused(name, e.value(x.py()), allowed);
+    let numpy = x.py().import("numpy")?;
     let array = numpy.call_method1("asarray", (x,)).map_err(ragged)?;
     let dtype = array.getattr("dtype")?;
-    let kind: String = dtype.getattr("kind")?.extract()?;
-    if !["i", "u", "f"].contains(&kind.as_str()) {
-        let text = format!("{name}: got dtype {dtype}, allowed: real numbers (float or integer)");
-        return Err(PyTypeError::new_err(text));
+    if !"iuf".contains(&dtype.getattr("kind")?.extract::<String>()?) {
+        return Err(other(format!("dtype {dtype}")));
     }
     let array = array.call_method1("astype", ("float64",))?;
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)

@@ -181,16 +181,14 @@ REFUSED = [
     (dict(W=np.where(np.eye(4) > 0, np.nan, 0)), r"W\[0, 0\]: got NaN, allowed: finite"),
     (dict(W=np.eye(4) + np.diag([1, 1, np.inf], -1)), r"W\[3, 2\]: got inf"),
     (dict(W=np.eye(4, dtype=complex)), r"W: got dtype complex128"),
-    (dict(W=[[1.0], [1.0, 2.0]]), r"W: got"),
+    (dict(W=np.ma.masked_less(np.eye(4), 0.5)), r"W: got a masked array"),
     (dict(W=np.tril(np.ones((4, 4)))), r"W: got one triangle"),
     (dict(W=sp.csr_array(np.tril(np.ones((4, 4))))), r"W: got one triangle"),
     (dict(W=sp.csr_array(np.diag([1.0, np.nan, 1.0, 1.0]))), r"W.data\[1\]: got NaN"),
     (dict(q=[1.0, np.nan, 0.0, 0.0]), r"q\[1\]: got NaN"),
     (dict(q=[[0.0, 1.0], [np.inf, 0.0]]), r"q\[1, 0\]: got inf"),
-    (dict(q=[0.0] * 5), r"mu: got 2 numbers, allowed: one per point"),
     (dict(mu=[0.3, -0.1]), r"mu\[1\]: got -0.1, allowed: finite numbers >= 0"),
     (dict(mu=0.3), r"dim: got None, allowed: 2 or 3"),
-    (dict(mu=0.3, dim=4), r"dim: got 4, allowed: 2 or 3"),
     (dict(tol=0.0), r"tol: got 0, allowed: 1e-14 to 1e-3"),
     (dict(start=[0.0]), r"start: got 1 numbers, allowed: 4"),
     (dict(method="newton"), r"unknown method `newton`"),
@@ -259,8 +257,7 @@ def test_a_case_is_checked_run_and_taken_apart():
     size = case.check()
     assert case.name == "cyclic" and case.increments == 16 and size["points"] == 12 and size["uniform_stress"] < 1e-9
     results = case.run(["hybrid", "nsgs"])
-    table = results.table("increments")
-    assert set(table["verdict"]) == {"solved"} and len(table["increment"]) == 34
+    assert results.table("increments")["verdict"] == ["solved"] * 34
     assert any(name.endswith(".loop.svg") for name in results.figures)
     figure = next(iter(results.figures.values()))
     assert figure._repr_svg_().startswith("<svg")
