@@ -27,6 +27,7 @@ use stickslip::studies::measure::{Bench, Repeats, here};
 use stickslip::studies::record::Record;
 use stickslip::studies::task::Looks;
 
+use crate::arrays::refused;
 use crate::own::choice;
 use crate::problem::{Raised, guarded, interruptible, taken, tolerance};
 
@@ -174,7 +175,8 @@ impl Case {
             refine: None,
             choice: choice(method, None, &Raised::default())?,
         };
-        let exported = guarded(py, || export(&self.0, &request))?.map_err(told)?;
+        let exported = guarded(py, || export(&self.0, &request))?;
+        let exported = exported.map_err(|e| told(e.to_string().replace("--", "")))?;
         let all = PyDict::new(py);
         for (end, bytes) in exported.files {
             match fclib::from_bytes(Path::new(end), bytes).map_err(told)? {
@@ -231,6 +233,13 @@ fn asked(
     for method in &methods {
         let mut own = choice(method, seconds, &raised)?;
         own.stop = stop.clone();
+        if choices
+            .iter()
+            .any(|known: &Choice| known.label == own.label)
+        {
+            let named = "each once, functions by stickslip.method(function, name)";
+            return Err(refused("methods", format!("{} twice", own.label), named));
+        }
         choices.push(own);
     }
     let bundle = interruptible(py, &stop, || make(&choices))?;

@@ -5,7 +5,7 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 use numpy::ndarray::Array2;
-use numpy::{IntoPyArray, PyArray2};
+use numpy::{IntoPyArray, PyArray2, ToPyArray};
 use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -102,30 +102,28 @@ impl Function {
         increment: &Increment<'_>,
         form: &LocalForm,
     ) -> PyResult<Option<(Vec<f64>, Vec<f64>)>> {
-        let w = dense(py, &form.w)?;
-        let q = form.q.clone().into_pyarray(py);
-        let mu = increment.system.friction().to_vec().into_pyarray(py);
-        let mut all = vec![
-            w.into_any(),
-            q.into_any(),
-            mu.into_any(),
-            // Half of what is accepted: the rest is for the rounding of the recovery.
-            (0.5 * increment.tolerance).into_pyobject(py)?.into_any(),
-        ];
-        if !form.modes.is_empty() {
-            let v =
-                Array2::from_shape_fn((form.q.len(), form.modes.len()), |(i, j)| form.modes[j][i]);
-            let s: Vec<f64> = form.balance.iter().map(|c| -c).collect();
-            all.extend([v.into_pyarray(py).into_any(), s.into_pyarray(py).into_any()]);
-        }
+        let (w, q, call) = (
+            dense(py, &form.w),
+            form.q.to_pyarray(py),
+            self.call.bind(py),
+        );
+        let mu = increment.system.friction().to_pyarray(py);
+        // The other half of what is accepted is for the rounding of the recovery.
+        let tol = 0.5 * increment.tolerance;
+        let (rows, motions) = (form.q.len(), form.modes.len());
+        let v = Array2::from_shape_fn((rows, motions), |(i, j)| form.modes[j][i]).into_pyarray(py);
+        let s: Vec<f64> = form.balance.iter().map(|c| -c).collect();
         let clock = Instant::now();
-        let found = self.call.bind(py).call1(PyTuple::new(py, all)?)?;
+        let found = match motions {
+            0 => call.call1((w, q, mu, tol))?,
+            _ => call.call1((w, q, mu, tol, v, s.into_pyarray(py)))?,
+        };
         self.reported_s = Some(clock.elapsed().as_secs_f64());
         if found.is_none() {
             return Ok(None);
         }
         let (p, rigid) = match found.cast::<PyTuple>() {
-            Ok(pair) if pair.len() == 2 && !form.modes.is_empty() => {
+            Ok(pair) if pair.len() == 2 && motions > 0 => {
                 (pair.get_item(0)?, vector("rigid", &pair.get_item(1)?)?)
             }
             _ => (found, Vec::new()),
@@ -144,16 +142,13 @@ impl Function {
 }
 
 /// A square matrix in full.
-pub fn dense<'py>(py: Python<'py>, w: &SquareMatrix) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let n = w.size();
-    let mut all = Array2::zeros((n, n));
-    for j in 0..n {
-        for (i, value) in w.column(j) {
-            all[[i, j]] = value;
-            if w.is_symmetric() {
-                all[[j, i]] = value;
-            }
+fn dense<'py>(py: Python<'py>, w: &SquareMatrix) -> Bound<'py, PyArray2<f64>> {
+    let mut all = Array2::zeros((w.size(), w.size()));
+    for (j, (i, value)) in (0..w.size()).flat_map(|j| w.column(j).map(move |entry| (j, entry))) {
+        all[[i, j]] = value;
+        if w.is_symmetric() {
+            all[[j, i]] = value;
         }
     }
-    Ok(all.into_pyarray(py))
+    all.into_pyarray(py)
 }

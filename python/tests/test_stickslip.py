@@ -123,10 +123,9 @@ def test_functions_are_methods_and_their_time_is_their_own():
     rows = stickslip.compare(W, q, mu, methods=[oracle, "hybrid"], tols=[1e-9])
     assert [row["verdict"] for row in rows] == ["solved", "solved"] and rows[1]["reported_seconds"] is None
     wrong = {"false-claim": lambda *a: 0 * known, "gave-up: unexplained": lambda *a: None,
-             "crashed": lambda *a: known[:-1], "crashed: ": lambda *a: 1 / 0}
+             "crashed": lambda *a: known[:-1], "crashed: ZeroDivisionError": lambda *a: 1 / 0}
     for verdict, function in wrong.items():
         assert stickslip.solve(W, q, mu, method=function).verdict.startswith(verdict)
-    assert "ZeroDivisionError" in stickslip.solve(W, q, mu, method=lambda *a: 1 / 0).verdict
     results = stickslip.Case("plate_mesh1").run([lambda W, q, mu, tol: stickslip.solve(W, q, mu, tol=tol).P])
     assert results.table("runs")["verdict"] == ["solved"] * 3
 
@@ -197,7 +196,6 @@ REFUSED = [
     (dict(pieces=np.eye(4)), r"pieces: got"),
     (dict(pieces=(np.ones((3, 1)), [1.0])), r"V: got shape \[3, 1\], allowed: 4 rows"),
     (dict(pieces=(np.ones((4, 1)), [1.0, 2.0])), r"s: got 2 numbers, allowed: 1"),
-    (dict(pieces=(np.ones((4, 9)), [1.0] * 9)), r"V: got 9 columns, allowed: at most 4"),
 ]
 
 
@@ -259,15 +257,16 @@ def test_a_case_is_checked_run_and_taken_apart():
     results = case.run(["hybrid", "nsgs"])
     assert results.table("increments")["verdict"] == ["solved"] * 34
     assert any(name.endswith(".loop.svg") for name in results.figures)
-    figure = next(iter(results.figures.values()))
-    assert figure._repr_svg_().startswith("<svg")
+    assert next(iter(results.figures.values()))._repr_svg_().startswith("<svg")
     own = case.increment(7)
     K, B, W = own["K"], own["B"], own["W"]
     condensed = B @ sp.linalg.spsolve(K.tocsc(), B.T.toarray())
     assert np.abs(condensed - W.toarray()).max() <= 1e-9 * np.abs(condensed).max()
     assert stickslip.judge(W, own["q"], own["mu"], own["P"]).solved
-    with pytest.raises(ValueError, match="increment"):
+    with pytest.raises(ValueError, match="^increment 17: `cyclic` has the increments 1 to 16"):
         case.increment(17)
+    with pytest.raises(ValueError, match="methods: got own:<lambda> twice, allowed: each once"):
+        case.run([lambda *a: None, lambda *a: 0])
 
 
 def test_a_case_may_be_a_dict_or_a_file_and_its_faults_are_told(tmp_path):
@@ -328,12 +327,9 @@ def test_the_verdict_is_that_of_the_command_line(tmp_path):
 
 @pytest.mark.parametrize("name", ["own_problem", "table1", "own_method"])
 def test_examples_run(name, tmp_path):
-    done = subprocess.run([sys.executable, HERE.parent / f"examples/{name}.py"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    subprocess.run([sys.executable, HERE.parent / f"examples/{name}.py"], cwd=tmp_path, check=True)
 
 
 def test_types_are_right():
     pytest.importorskip("mypy")
-    asked = [sys.executable, "-m", "mypy", "--strict", "stickslip", "examples"]
-    done = subprocess.run(asked, cwd=HERE.parent, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
+    subprocess.run([sys.executable, "-m", "mypy", "--strict", "stickslip", "examples"], cwd=HERE.parent, check=True)
