@@ -283,41 +283,31 @@ fn told<'py>(py: Python<'py>, method: &str, found: Found) -> PyResult<Bound<'py,
     let (mut claim, mut states, mut history) = (String::new(), Vec::new(), Vec::new());
     let [mut p, mut jump, mut judged] = [Vec::new(), Vec::new(), Vec::new()];
     let mut work = Counters::default();
+    let spent = [f64::NAN, seconds.enforcement_s][usize::from(seconds.total_s > 0.0)];
     if let Some((outcome, r, status, v)) = found {
         claim = match (&outcome.status, outcome.claim) {
             (Status::Converged, Claim::Exact) => "contact laws".into(),
             (Status::Converged, _) => "own laws".into(),
             (status, _) => status.to_string(),
         };
+        judged.extend([r.violation, r.natural_map, r.penetration, r.adhesion]);
+        judged.extend([r.complementarity, r.cone, r.slip_direction]);
         judged.extend([
-            r.violation,
-            r.natural_map,
-            r.penetration,
-            r.adhesion,
-            r.complementarity,
+            r.equilibrium,
+            r.claimed,
+            r.reference_force,
+            r.reference_jump,
         ]);
-        judged.extend([r.cone, r.slip_direction, r.equilibrium, r.claimed]);
-        judged.extend([r.reference_force, r.reference_jump]);
         states = status.iter().map(|own| own.as_str()).collect();
         history = outcome.history.iter().map(|own| own.violation).collect();
         (p, jump, work) = (outcome.state.p, v, outcome.counters);
     }
-    let Counters {
-        iterations,
-        factorisations,
-        solves,
-        local_solves,
-        ..
-    } = work;
+    let [tangents, laws] = [work.factorisations, work.local_solves];
     let answer = (
         (method, verdict.to_string(), verdict.is_solved(), claim),
         (p.into_pyarray(py), jump.into_pyarray(py), states, judged),
-        [iterations, factorisations, solves, local_solves],
-        (
-            seconds.enforcement_s,
-            seconds.reported_s,
-            history.into_pyarray(py),
-        ),
+        [work.iterations, tangents, work.solves, laws],
+        (spent, seconds.reported_s, history.into_pyarray(py)),
     );
     Ok(answer.into_pyobject(py)?.into_any())
 }

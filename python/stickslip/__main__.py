@@ -12,10 +12,10 @@ def main() -> NoReturn:
     """Runs it with the arguments of this process and exits with its code."""
     # Its own handlers end it; those of Python would wait for the interpreter.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # Workers are started by the script that lies beside the interpreter.
-    script = Path(sys.executable).with_name("stickslip")
-    sys.stdout.flush()
-    sys.exit(program(["stickslip", *sys.argv[1:]], script if script.exists() else None))
+    # Workers are started by the script: this one, or that beside the interpreter.
+    places = (Path(sys.argv[0]), Path(sys.executable).with_name("stickslip"))
+    script = next((place.absolute() for place in places if place.name == "stickslip" and place.exists()), None)
+    sys.exit(program(["stickslip", *sys.argv[1:]], script))
 
 
 if __name__ == "__main__":
