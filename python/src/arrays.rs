@@ -10,8 +10,8 @@ use stickslip::files::interchange::SparseMatrix;
 use stickslip::studies::exchange::ROUNDING;
 use stickslip_methods::{MethodError, SquareMatrix};
 
-/// Columns of a tile: a line of the cache.
-const TILE: usize = 8;
+/// Rows and columns of a tile that the cache holds twice.
+const TILE: usize = 32;
 
 /// An array that is not what it has to be.
 pub fn refused(what: &str, got: impl std::fmt::Display, allowed: &str) -> PyErr {
@@ -149,11 +149,12 @@ pub fn operator(w: &Bound<'_, PyAny>, rows: usize) -> PyResult<SquareMatrix> {
 
 fn is_exactly_symmetric(all: &[f64], rows: usize) -> bool {
     // In tiles: rows of one side are columns of the other.
+    let tiles = || (0..rows).step_by(TILE);
     let mut exactly = true;
-    for tile in (0..rows).step_by(TILE) {
-        for i in tile..rows {
-            let columns = all[tile * rows + i..].iter().step_by(rows);
-            let row = &all[i * rows + tile..i * rows + (i + 1).min(tile + TILE)];
+    for (tile, other) in tiles().flat_map(|tile| tiles().map(move |other| (tile, other))) {
+        for i in tile..rows.min(tile + TILE) {
+            let columns = all[other * rows + i..].iter().step_by(rows);
+            let row = &all[i * rows + other.min(i + 1)..i * rows + (i + 1).min(other + TILE)];
             let pairs = row.iter().zip(columns);
             exactly &= pairs.fold(true, |same, (a, b)| same & (a == b));
         }
