@@ -99,8 +99,7 @@ pub fn columns(name: &str, x: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<Ve
     Ok((0..count).map(column).collect())
 }
 
-/// W from a NumPy array or a SciPy matrix: the lower triangle of its symmetric part where it is symmetric up to rounding, all of
-/// it otherwise.
+/// W from a NumPy array or a SciPy matrix: half of it where it is symmetric up to rounding, all of it otherwise.
 pub fn operator(w: &Bound<'_, PyAny>, rows: usize) -> PyResult<SquareMatrix> {
     if w.hasattr("tocoo")? {
         return sparse(w, rows);

@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip::run::choice::Choice;
-use stickslip::run::outside::outcome;
+use stickslip::run::outside::{ASKED, known, outcome};
 use stickslip_methods::{
     Enforcement, Increment, LocalForm, MethodError, Monitor, Needs, Outcome, SquareMatrix, Status,
 };
@@ -72,11 +72,8 @@ impl Enforcement for Function {
             return outcome(increment, Status::Stopped, 0, None);
         }
         let form = increment.local_form()?;
-        if form.loose > 0 {
-            return outcome(increment, Status::Mechanism, 0, None);
-        }
-        if form.q.is_empty() {
-            return outcome(increment, Status::Converged, 0, Some((&[], &[])));
+        if let Some(known) = known(increment, &form) {
+            return known;
         }
         let found =
             Python::attach(|py| self.ask(py, increment, &form).map_err(|e| self.of(py, e)))?;
@@ -108,8 +105,7 @@ impl Function {
             self.call.bind(py),
         );
         let mu = increment.system.friction().to_pyarray(py);
-        // The other half of what is accepted is for the rounding of the recovery.
-        let tol = 0.5 * increment.tolerance;
+        let tol = ASKED * increment.tolerance;
         let (rows, motions) = (form.q.len(), form.modes.len());
         let v = Array2::from_shape_fn((rows, motions), |(i, j)| form.modes[j][i]).into_pyarray(py);
         let s: Vec<f64> = form.balance.iter().map(|c| -c).collect();

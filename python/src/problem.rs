@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use stickslip::run::judged::{JudgedIncrement, Seconds};
 use stickslip::run::path::Solver;
 use stickslip::run::verdict::Verdict;
+use stickslip::studies::exchange::problem_file::MOST_MOTIONS;
 use stickslip::studies::exchange::{System, system};
 use stickslip::studies::why::answers::Answers;
 use stickslip::studies::why::explain;
@@ -22,9 +23,6 @@ use stickslip_methods::{
 
 use crate::arrays::{columns, failed, operator, refused, vector, vector_of};
 use crate::own::choice;
-
-/// Rigid motions that a problem may have: those of ten bodies in space.
-const MOST_MOTIONS: usize = 60;
 
 /// Time between two looks at signals: each takes the interpreter's lock.
 const BETWEEN: Duration = Duration::from_millis(10);

@@ -14,7 +14,7 @@ use crate::run::outside::{OUTSIDE, Outside, Program, SECONDS};
 use crate::run::registry::{method, methods};
 
 /// A method with its options.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Choice {
     source: Source,
     /// Time for an increment [s].
@@ -39,13 +39,9 @@ enum Source {
 /// Makes an instance of a method.
 type Build = Arc<dyn Fn() -> Box<dyn Enforcement> + Send + Sync>;
 
-impl fmt::Debug for Source {
+impl fmt::Debug for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Registry(method, options) => write!(f, "{} {options:?}", method.name),
-            Self::Outside(program) => write!(f, "{program:?}"),
-            Self::Own(_) => write!(f, "own"),
-        }
+        f.write_str(&self.argument())
     }
 }
 

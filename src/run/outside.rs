@@ -45,7 +45,7 @@ const REFUSED: i32 = 4;
 
 /// Fraction of the tolerance that the program is asked for: the rest is for what rounding adds when displacements are
 /// recovered, as methods here leave it.
-const ASKED: f64 = 0.5;
+pub const ASKED: f64 = 0.5;
 
 /// Largest program [bytes].
 const MAX_PROGRAM: u64 = 4 << 30;
@@ -164,11 +164,8 @@ impl Enforcement for Outside {
         self.reported_s = None;
         let elastic = increment.system.elastic();
         let form = increment.local_form()?;
-        if form.loose > 0 {
-            return outcome(increment, Status::Mechanism, 0, None);
-        }
-        if form.q.is_empty() {
-            return outcome(increment, Status::Converged, 0, Some((&[], &[])));
+        if let Some(known) = known(increment, &form) {
+            return known;
         }
         let mut folder = elastic
             .on_body(|| Folder::new(increment, &form))?
@@ -206,6 +203,15 @@ impl Enforcement for Outside {
 
     fn reported_s(&self) -> Option<f64> {
         self.reported_s
+    }
+}
+
+/// The outcome where nobody has to be asked: rigid motions that no contact force holds, or no contact points.
+pub fn known(increment: &Increment<'_>, form: &LocalForm) -> Option<Result<Outcome, MethodError>> {
+    match (form.loose, form.q.is_empty()) {
+        (0, false) => None,
+        (0, true) => Some(outcome(increment, Status::Converged, 0, Some((&[], &[])))),
+        _ => Some(outcome(increment, Status::Mechanism, 0, None)),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::studies::exchange::{System, global_system, local_system};
 
 /// Rigid motions a local problem may have: those of ten bodies in space. Methods hold them dense, so that without a
 /// bound an empty V would take memory that grows with the square of the file.
-const MOST_MOTIONS: usize = 60;
+pub const MOST_MOTIONS: usize = 60;
 
 /// Longest name of a problem [bytes]: files of its solutions have longer ones, and file systems take 255.
 const MAX_NAME: usize = 200;
