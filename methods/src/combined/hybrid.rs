@@ -92,8 +92,9 @@ options! {
 const FEW: usize = 150;
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;
-/// Most steps of a Newton run with another scale than the natural one.
-const SCALED_STEPS: usize = 12;
+/// Most steps of a Newton run with another scale than the natural one, and of one where W is sparse: what they do not solve, the
+/// interior-point method does soon.
+const SHORT_STEPS: usize = 12;
 /// Interior-point steps without progress after which its path is followed by series.
 const PATH_PATIENCE: usize = 6;
 /// Rounds of sweeps before the last method.
@@ -140,10 +141,13 @@ impl CondensedMethod for Solver {
             if let Some(end) = sweeps.sweep(settings.first << round, limits, problem, monitor)? {
                 return Ok(end);
             }
-            let newton = Newton {
+            let mut newton = Newton {
                 regularise: false,
                 ..runs.newton(Sets)
             };
+            if sparse {
+                newton.limits = runs.within(SHORT_STEPS, NEWTON_PATIENCE, problem);
+            }
             let end = runs.run(newton, sweeps.reached(problem), problem, monitor)?;
             if end.is_final() {
                 return Ok(end);
@@ -201,7 +205,7 @@ impl NewtonRuns<'_> {
     ) -> Ended {
         problem.begin_phase();
         if self.multiple != 1.0 {
-            newton.limits = self.within(SCALED_STEPS, NEWTON_PATIENCE, problem);
+            newton.limits = self.within(SHORT_STEPS, NEWTON_PATIENCE, problem);
         }
         let end = newton.run(problem, start, monitor);
         (self.multiple, *self.tangent) = (1.0, newton.tangent);
