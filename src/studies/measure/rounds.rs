@@ -80,6 +80,8 @@ struct Runner<'a> {
     states: Vec<ContactState>,
     /// Preparation, solution, enforcement, and that by the account of a program from outside, by round [s].
     samples: [Vec<f64>; 4],
+    /// Preparation and solution of all rounds [s].
+    spent_s: f64,
     broken: Option<Verdict>,
 }
 
@@ -90,14 +92,13 @@ impl<'a> Runner<'a> {
             choice,
             states: Vec::new(),
             samples: Default::default(),
+            spent_s: 0.0,
             broken: None,
         }
     }
 
     fn goes_on(&self, repeats: Repeats) -> bool {
-        let [prepare, solve, ..] = &self.samples;
-        let spent_s = prepare.iter().chain(solve).sum();
-        self.broken.is_none() && !repeats.enough(solve.len(), spent_s)
+        self.broken.is_none() && !repeats.enough(self.samples[0].len(), self.spent_s)
     }
 
     fn round(&mut self, path: &Path<'_>) -> Result<(), Verdict> {
@@ -131,10 +132,8 @@ impl<'a> Runner<'a> {
             }
             start_load = load;
         }
-        self.samples
-            .iter_mut()
-            .zip(sums)
-            .for_each(|(own, sum)| own.push(sum));
+        self.spent_s += sums[0] + sums[1];
+        (self.samples.iter_mut().zip(sums)).for_each(|(own, sum)| own.push(sum));
         Ok(())
     }
 
