@@ -124,13 +124,9 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
         };
         for (region, part) in partition.parts.iter().enumerate() {
             for (shape, part) in pieces_of(body, cell, &map, partition, part) {
-                cells.push(FieldCell {
-                    shape,
-                    points: part
-                        .iter()
-                        .map(|x| vertices.of(cell, x, region, now))
-                        .collect(),
-                });
+                let points = part.iter().map(|x| vertices.of(cell, x, region, now));
+                let points = points.collect();
+                cells.push(FieldCell { shape, points });
                 let xi = map.inverse(&mean(&part)).unwrap_or_default();
                 taken.push((cell, region, xi));
                 sides.push(partition.parts[region].sides.first().map_or(0.0, |s| s.1));
@@ -158,6 +154,11 @@ fn stresses(
     let (mesh, dim, integrator) = (&body.mesh, body.mesh.dim(), body.integrator());
     let axes = STRESS[usize::from(dim == 3)];
     let of_cell = |places: &[(usize, usize, Point)]| -> Vec<Option<[Point; 3]>> {
+        if let [(cell, 0, [0.0, 0.0, 0.0])] = *places
+            && let Some(gradient) = integrator.central_gradient(cell, &now.u)
+        {
+            return vec![Some(gradient)];
+        }
         let map = mesh.map(places[0].0);
         // As its stiffness, which was integrated: no number is no stress.
         let mut own = integrator.stress(places[0].0).ok();
@@ -203,10 +204,8 @@ struct Vertices<'a> {
 impl<'a> Vertices<'a> {
     fn new(body: &'a Body, now: &Snapshot) -> Self {
         let dim = body.mesh.dim();
-        let displacement = now.u[..body.mesh.nodes.len() * dim]
-            .chunks_exact(dim)
-            .map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)])
-            .collect();
+        let nodal = now.u[..body.mesh.nodes.len() * dim].chunks_exact(dim);
+        let displacement = nodal.map(|u| [u[0], u[1], u.get(2).copied().unwrap_or(0.0)]);
         let mut near = HashMap::<usize, Vec<usize>>::new();
         for (k, crack) in body.cracks.iter().enumerate() {
             (crack.cells().iter()).for_each(|cell| near.entry(*cell).or_default().push(k));
@@ -215,7 +214,7 @@ impl<'a> Vertices<'a> {
             near,
             body,
             points: body.mesh.nodes.clone(),
-            displacement,
+            displacement: displacement.collect(),
             found: HashMap::new(),
             quantum: 1e-7 * body.mesh.smallest_edge(),
         }

@@ -3,7 +3,7 @@
 
 use crate::enrichment::basis::Region;
 use crate::enrichment::cell_functions::CellFunctions;
-use crate::geometry::{Point, dot};
+use crate::geometry::{Point, add_scaled, dot};
 use crate::material::{Dilatation, Lame, strain};
 use crate::mesh::cell::Nodal;
 use crate::quadrature::{Quadrature, measure};
@@ -40,18 +40,27 @@ impl<'a> CellIntegrator<'a> {
                 *own = self.assumed(cell, &points)?;
             }
         }
-        let dilatation =
-            if self.lame.dilatation == Dilatation::Mean && assumed.iter().any(Option::is_none) {
-                Some(ProjectedDilatation::of(self, cell, &self.evaluated(cell)?))
-            } else {
-                None
-            };
+        let mean = self.lame.dilatation == Dilatation::Mean && assumed.iter().any(Option::is_none);
+        let evaluated = mean.then(|| self.evaluated(cell)).transpose()?;
+        let dilatation = evaluated.map(|own| ProjectedDilatation::of(self, cell, &own));
         Ok(CellStress {
             functions: self.functions(cell),
             lame: self.lame,
             assumed,
             dilatation,
         })
+    }
+
+    /// ∂u_a/∂x_b at the centre of a plain parallelogram or parallelepiped, from all unknowns; `None` elsewhere. Its stress by Hooke's
+    /// law is that of the cell, assumed or not: the modes that vanish at the centre are orthogonal to the constants, and the
+    /// gradient there is the mean one.
+    pub fn central_gradient(&self, cell: usize, u: &[f64]) -> Option<[Point; 3]> {
+        let (map, dim, mut h) = (self.mesh.map(cell), self.mesh.dim(), [[0.0; 3]; 3]);
+        for (&node, g) in (self.mesh.cell(cell).iter()).zip(map.gradients(&[0.0; 3]).0.iter()) {
+            let own = &u[node as usize * dim..][..dim];
+            (h.iter_mut().zip(own)).for_each(|(h, &u)| *h = add_scaled(h, u, g));
+        }
+        (self.enrichment.is_plain(self.mesh, cell) && map.is_affine()).then_some(h)
     }
 
     /// Stiffness of the shape functions by region of a cell without branch functions, by node and component.
@@ -92,12 +101,10 @@ impl<'a> CellIntegrator<'a> {
         let mut regions = vec![Vec::new(); self.enrichment.regions(cell)];
         let mut put = |at: SidedPoint, g: Nodal<Point>| regions[at.region].push((at, g));
         match map.constant_inverse() {
-            Some(inverse) => {
-                for at in self.points(cell)? {
-                    let slopes = map.slopes(&at.xi.map(|v| [v]), Some(&inverse));
-                    put(at, Nodal::new(nodes, |i| slopes[i].map(|[g]| g)));
-                }
-            }
+            Some(inverse) => self.points(cell)?.into_iter().for_each(|at| {
+                let slopes = map.slopes(&at.xi.map(|v| [v]), Some(&inverse));
+                put(at, Nodal::new(nodes, |i| slopes[i].map(|[g]| g)));
+            }),
             None => {
                 // Standard functions come first.
                 let locals: Vec<usize> = functions.steps(0).take(nodes).map(|s| s.0).collect();
