@@ -65,8 +65,8 @@ pub struct Enrichment {
     node_ptr: Vec<usize>,
     /// Nodes with φ = 0 for some crack.
     on_crack: BTreeSet<u32>,
-    /// Shortest edge at every node [m].
-    pub sizes: Vec<f64>,
+    /// Lengths of the mesh.
+    pub lengths: Lengths,
     /// Divided cells with faces of a crack, by crack.
     cut_by: Vec<Vec<usize>>,
     standard: usize,
@@ -166,7 +166,7 @@ impl Enrichment {
             step_ptr: vec![0],
             steps: Vec::new(),
             on_crack: cracks.iter().flat_map(Crack::nodes_on).collect(),
-            sizes: lengths.of_nodes.clone(),
+            lengths: lengths.clone(),
             cut_by,
             standard,
         };

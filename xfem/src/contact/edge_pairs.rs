@@ -24,7 +24,7 @@ pub fn edge_pairs(
 ) -> Result<ContactSurface, CellError> {
     let (mesh, dim) = (integrator.mesh, integrator.mesh.dim());
     let crack = &integrator.cracks[index];
-    let sizes = &integrator.enrichment.sizes;
+    let sizes = &integrator.enrichment.lengths.of_nodes;
     let facets = CrackFacets::new(mesh, index, crack, integrator.enrichment);
     let mut points: Vec<Option<ContactPoint>> = facets
         .corners

@@ -130,13 +130,13 @@ impl<'a> FreeJumps<'a> {
     /// Role of every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
         let mesh = self.integrator.mesh;
-        let Enrichment { tips, sizes, .. } = self.integrator.enrichment;
+        let Enrichment { tips, lengths, .. } = self.integrator.enrichment;
         // At a corner other functions jump, too.
         let tips = || tips.iter().filter(|tip| tip.shape != FrontShape::Corner);
         let mut numbers: BTreeMap<(u32, [usize; 2]), u32> = BTreeMap::new();
         let mut crossing = |corner: &Corner| {
             let [i, j] = corner.nodes?;
-            let size = sizes[i as usize].min(sizes[j as usize]);
+            let size = lengths.of_nodes[i as usize].min(lengths.of_nodes[j as usize]);
             let mut distances = tips().map(|tip| tip.distance(&corner.x));
             if distances.any(|distance| distance <= AT_TIP * size) {
                 return None;
@@ -173,7 +173,7 @@ impl<'a> FreeJumps<'a> {
     /// Where corners of facets lie along the arm, in 1e-9 of its length, from its end nearer to the middle of the body: the same
     /// however the crack is read. 0 in a solid.
     pub fn along(&self) -> impl Fn(usize) -> i64 {
-        let (extent, middle) = self.integrator.mesh.extent();
+        let (extent, middle) = self.integrator.enrichment.lengths.extent;
         let crack = &self.integrator.cracks[self.index];
         let round = |v: f64| (v * 1e9).round() as i64;
         let key = |vertex: &PathVertex| {

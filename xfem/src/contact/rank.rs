@@ -272,13 +272,12 @@ pub fn merge(
         number[old] = new as u32;
     }
     let numbers: Vec<u32> = target.iter().map(|&t| number[t]).collect();
-    let points = kept.iter().map(|&old| {
-        let merged = (0..count).filter(|&k| k != old && target[k] == old);
-        merged.fold(surface.points[old].clone(), |sum, k| {
-            sum.with(&surface.points[k])
-        })
-    });
-    surface.points = points.collect();
+    let mut points: Vec<_> = kept.iter().map(|&k| surface.points[k].clone()).collect();
+    for k in (0..count).filter(|&k| target[k] != k) {
+        let into = &mut points[numbers[k] as usize];
+        *into = into.with(&surface.points[k]);
+    }
+    surface.points = points;
     surface.surface.renumber(|k| numbers[k as usize]);
     let place = |k: usize| kept.partition_point(|&old| old < k);
     let arms = arms.iter().map(|arm| place(arm.start)..place(arm.end));
