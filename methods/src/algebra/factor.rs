@@ -80,36 +80,35 @@ impl Elimination {
     /// that is most of the work. Then W is condensed along the tree of the free order instead. Rows that balance a floating body
     /// touch all contact unknowns, which come last there.
     pub fn planned(&self, k: &SquareMatrix, balance: &Balance) -> Planned {
-        /// Multiplications and additions below which the order does not matter: a tenth of a second.
-        const WORTH: f64 = 2e9;
+        /// Multiplications and additions in the contact unknowns below which another order gains little.
+        const WORTH: f64 = 5e8;
         /// Least gain by the free order.
         const GAIN: f64 = 0.8;
-        /// Part of the work that lies in the contact unknowns where another order may gain so much.
-        const DENSE: f64 = 0.1;
         let clock = Instant::now();
         let planned = |analysis: Analysis, condensation: f64| Planned {
             analysis,
             condensation,
             analysis_s: clock.elapsed().as_secs_f64(),
         };
-        let last = Analysis::new(k, &self.contact_last, &self.in_contact);
-        let c = (k.size() - last.ordering.contact_begin) as f64;
+        let last = || Analysis::new(k, &self.contact_last, &self.in_contact);
+        let c = self.in_contact.iter().filter(|own| **own).count() as f64;
         let m = self.rows.len() as f64;
         // Columns of Y begin where their row does: of a dense triangle and a dense square about a third is left.
         let condensation = c * m * (c + m) / 3.0;
-        let (work, dense) = (
-            last.tree.work() + condensation,
-            c.powi(3) / 3.0 + condensation,
-        );
-        if self.free.is_empty() || balance.holds_something() || work < WORTH || dense < DENSE * work
-        {
-            return planned(last, condensation);
+        // With the contact unknowns last at least that of their own part.
+        let dense = c.powi(3) / 3.0 + condensation;
+        if self.free.is_empty() || balance.holds_something() || dense < WORTH {
+            return planned(last(), condensation);
         }
         let free = Analysis::new(k, &self.free, &vec![false; k.size()]);
         let place = |row: &Vec<usize>| row.iter().map(|&j| free.ordering.inverse[j]).collect();
-        let rows = self.rows.iter().map(place);
-        let along_tree = free.tree.condensation(rows);
-        if free.tree.work() + along_tree < GAIN * work {
+        let along_tree = free.tree.condensation(self.rows.iter().map(place));
+        let least = (free.tree.work() + along_tree) / GAIN;
+        if least < dense {
+            return planned(free, along_tree);
+        }
+        let last = last();
+        if least < last.tree.work() + condensation {
             planned(free, along_tree)
         } else {
             planned(last, condensation)
