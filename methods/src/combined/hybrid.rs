@@ -92,8 +92,7 @@ options! {
 const FEW: usize = 150;
 /// Newton steps without progress after which a run is given up.
 const NEWTON_PATIENCE: usize = 8;
-/// Most steps of a Newton run with another scale than the natural one, and of one where W is sparse: what they do not solve, the
-/// interior-point method does soon.
+/// Most steps of a Newton run with another scale than the natural one, or where W is sparse: there it cycles, or is done by then.
 const SHORT_STEPS: usize = 12;
 /// Interior-point steps without progress after which its path is followed by series.
 const PATH_PATIENCE: usize = 6;
@@ -141,13 +140,10 @@ impl CondensedMethod for Solver {
             if let Some(end) = sweeps.sweep(settings.first << round, limits, problem, monitor)? {
                 return Ok(end);
             }
-            let mut newton = Newton {
+            let newton = Newton {
                 regularise: false,
                 ..runs.newton(Sets)
             };
-            if sparse {
-                newton.limits = runs.within(SHORT_STEPS, NEWTON_PATIENCE, problem);
-            }
             let end = runs.run(newton, sweeps.reached(problem), problem, monitor)?;
             if end.is_final() {
                 return Ok(end);
@@ -204,7 +200,7 @@ impl NewtonRuns<'_> {
         monitor: &mut dyn Monitor,
     ) -> Ended {
         problem.begin_phase();
-        if self.multiple != 1.0 {
+        if self.multiple != 1.0 || problem.operator.w.sparse().is_some() {
             newton.limits = self.within(SHORT_STEPS, NEWTON_PATIENCE, problem);
         }
         let end = newton.run(problem, start, monitor);

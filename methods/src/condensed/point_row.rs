@@ -70,7 +70,7 @@ pub(crate) struct Bordered {
     /// Right-hand sides of the balance are divided by this.
     balance: f64,
     active: Vec<Place>,
-    laws: Vec<LawRow>,
+    laws: Vec<LawPoint>,
     right: Vec<f64>,
 }
 
@@ -80,12 +80,6 @@ impl Bordered {
         let (mut system, w) = (Self::default(), &*problem.operator.w);
         let regular = system.factor_with(problem, w, active, law, false);
         regular.then_some(system)
-    }
-
-    /// The same, [held](Self::factor_held).
-    pub fn held(problem: &ContactProblem<'_>, active: &[usize], law: &Law<'_>) -> Option<Self> {
-        let mut system = Self::default();
-        system.factor_held(problem, active, law).then_some(system)
     }
 
     /// Assembles and factors it on the active rows, in increasing order; false if it is singular. Where the rows leave a piece loose,
@@ -155,7 +149,7 @@ impl Bordered {
         let J = self.lu.zeros(n + q.len());
         match law {
             Law::Rows { a, c } => {
-                law_rows(active, c, &mut self.laws);
+                law_points(active, c, &mut self.laws);
                 let mut work = Vec::new();
                 for (j, place) in active.iter().enumerate() {
                     let column = &mut J.column_mut(j)[..n];
@@ -209,9 +203,12 @@ impl Bordered {
 /// A row with the rows of its point.
 pub(crate) type Place = (usize, Range<usize>);
 
-/// Row k of C: where the rows of its point stand in a column of W, and their coefficients; 0 behind those there are. Side by side for
-/// the loop over all entries.
-pub(crate) type LawRow = ([usize; 3], [f64; 3]);
+/// Rows of C of one point: how many, where those of the point stand in a column of W, and the coefficients of each.
+pub(crate) struct LawPoint {
+    rows: usize,
+    own: Range<usize>,
+    c: [[f64; 3]; 3],
+}
 
 /// Rows, in increasing order, in place of what `places` holds.
 pub(crate) fn place(problem: &ContactProblem<'_>, indices: &[usize], places: &mut Vec<Place>) {
@@ -225,17 +222,14 @@ pub(crate) fn place(problem: &ContactProblem<'_>, indices: &[usize], places: &mu
 }
 
 /// C of these rows in place of what `laws` holds.
-pub(crate) fn law_rows(places: &[Place], c: Blocks<'_>, laws: &mut Vec<LawRow>) {
-    let law = |(row, own): &Place| {
-        let (last, c) = (own.end - 1, c[*row]);
-        let at = [0, 1, 2].map(|l| last.min(own.start + l));
-        (
-            at,
-            [0, 1, 2].map(|l| if l < own.len() { c[l] } else { 0.0 }),
-        )
+pub(crate) fn law_points(places: &[Place], c: Blocks<'_>, laws: &mut Vec<LawPoint>) {
+    let law = |point: &[Place]| LawPoint {
+        rows: point.len(),
+        own: point[0].1.clone(),
+        c: [0, 1, 2].map(|k| point.get(k).map_or([0.0; 3], |place| c[place.0])),
     };
     laws.clear();
-    laws.extend(places.iter().map(law));
+    laws.extend(places.chunk_by(|a, b| a.1 == b.1).map(law));
 }
 
 /// Column k of A + C W on some rows.
@@ -243,7 +237,7 @@ pub(crate) fn law_column(
     problem: &ContactProblem<'_>,
     w: &dyn Delassus,
     (k, point): &Place,
-    (places, a, laws): (&[Place], Blocks<'_>, &[LawRow]),
+    (places, a, laws): (&[Place], Blocks<'_>, &[LawPoint]),
     work: &mut Vec<f64>,
     column: &mut [f64],
 ) {
@@ -254,12 +248,9 @@ pub(crate) fn law_column(
     }
     // Rows of one point follow each other.
     let first = places.partition_point(|(row, _)| *row < point.start);
-    for (entry, (row, own)) in column[first..].iter_mut().zip(&places[first..]) {
-        if own != point {
-            break;
-        }
-        *entry += a[*row][k - own.start];
-    }
+    let of_point = places[first..].iter().take_while(|place| place.1 == *point);
+    let entries = column[first..].iter_mut().zip(of_point);
+    entries.for_each(|(entry, (row, own))| *entry += a[*row][k - own.start]);
 }
 
 /// C Q/ρ of a row and a rigid motion.
@@ -267,10 +258,19 @@ pub(crate) fn law_border((k, own): &Place, c: Blocks<'_>, q: &[f64], rho: f64) -
     own.clone().zip(c[*k]).map(|(l, c)| c * q[l] / rho).sum()
 }
 
-/// C w, at most `D` rows a point.
-fn times<const D: usize>(laws: &[LawRow], w: &[f64], column: &mut [f64]) {
-    for (entry, (at, c)) in column.iter_mut().zip(laws) {
-        *entry = (0..D).map(|l| c[l] * w[at[l]]).sum();
+/// C w; of a point with all `D` rows without a loop.
+fn times<const D: usize>(laws: &[LawPoint], w: &[f64], mut column: &mut [f64]) {
+    for LawPoint { rows, own, c } in laws {
+        let (entries, rest) = column.split_at_mut(*rows);
+        let w = &w[own.clone()];
+        match (w.first_chunk::<D>(), entries.first_chunk_mut::<D>()) {
+            (Some(w), Some(entries)) => {
+                *entries = std::array::from_fn(|k| (0..D).map(|l| c[k][l] * w[l]).sum());
+            }
+            _ => (entries.iter_mut().zip(c))
+                .for_each(|(entry, c)| *entry = c.iter().zip(w).map(|(c, w)| c * w).sum()),
+        }
+        column = rest;
     }
 }
 

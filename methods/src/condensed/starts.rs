@@ -69,7 +69,8 @@ pub(crate) fn tied_forces(problem: &ContactProblem<'_>) -> Option<Vec<f64>> {
                 .collect()
         };
         let (a, c) = (blocks(ridge), blocks(rho));
-        let mut system = Bordered::held(problem, &all, &Law::Rows { a: &a, c: &c })?;
+        let (mut system, law) = (Bordered::default(), Law::Rows { a: &a, c: &c });
+        system.factor_held(problem, &all, &law).then_some(())?;
         system.solve(&scaled, &problem.balance).map(|x| x.0)
     };
     tied(0.0).or_else(|| tied(RIDGE))

@@ -23,7 +23,9 @@ use faer::{Accum, Mat, Par};
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
-use crate::condensed::point_row::{Blocks, LawRow, Place, law_border, law_column, law_rows, place};
+use crate::condensed::point_row::{
+    Blocks, LawPoint, Place, law_border, law_column, law_points, place,
+};
 use crate::condensed::problem::ContactProblem;
 
 /// Active rows from which steps with earlier factors are worth their bookkeeping.
@@ -215,7 +217,7 @@ impl Factored {
 /// Rows of a tangent whose columns are asked for.
 struct Listed {
     places: Vec<Place>,
-    laws: Vec<LawRow>,
+    laws: Vec<LawPoint>,
 }
 
 impl Listed {
@@ -223,7 +225,7 @@ impl Listed {
     fn new(problem: &ContactProblem<'_>, indices: &[usize], c: Blocks<'_>) -> Self {
         let (mut places, mut laws) = (Vec::new(), Vec::new());
         place(problem, indices, &mut places);
-        law_rows(&places, c, &mut laws);
+        law_points(&places, c, &mut laws);
         Self { places, laws }
     }
 
