@@ -4,21 +4,29 @@ A peer is a module with `NAME`, `VERSION`, `solvers(problem)` -> {name: iteratio
 `solve(problem, solver, tolerance, iterations, repeats)` -> {"info", "iterations", "residual", "time_s", "r"}, from r = 0, r in
 the units of the file, `time_s` the fastest of the repeats. `info` is 0 where the solver itself reports success.
 README.md beside this file says how to read the numbers.
+
+`peer.py FILE OUT` writes the problem of a file, local or global, as a local one: what the peers see.
 """
 
 import argparse
 import csv
 import multiprocessing
 import os
+import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
+import scipy.sparse as sparse
+from scipy.sparse.linalg import splu
 
-SMALLEST_TOLERANCE = 1e-16
+# Part of the entries below which a matrix is held by these alone.
+SPARSE = 0.1
+# Given to a solver in turn.
+TOLERANCES = [1e-4, 1e-6, *(10.0**-k for k in range(8, 17))]
 COLUMNS = [
     "file", "dim", "points", "solver", "target", "tolerance", "status", "info", "iterations",
-    "residual", "natural_map", "time_s", "repeats", "attempts", "reaction",
+    "residual", "natural_map", "reached", "time_s", "repeats", "attempts", "reaction",
 ]
 
 
@@ -27,25 +35,30 @@ class Refused(Exception):
 
 
 class Problem:
-    """u = W r + q with the cones of μ, in the units of the file."""
+    """u = W r + q with the cones of μ, in the units of the file; a global problem is condensed."""
 
     def __init__(self, path):
         with h5py.File(path, "r") as file:
-            if "fclib_local" not in file:
-                raise Refused("no /fclib_local in it: export or give the local problem")
-            group = file["fclib_local"]
-            if "V" in group and group["V/n"][0] > 0:
+            own = file["fclib_local" if "fclib_local" in file else "fclib_global"]
+            if "V" in own and own["V/n"][0] > 0:
                 raise Refused("it has unknowns beside the reactions (V, s), which these solvers lack")
-            self.dim = int(group["spacedim"][0])
-            self.q = group["vectors/q"][:].astype(float)
-            self.mu = group["vectors/mu"][:].astype(float)
-            self.w = dense(group["W"])
+            self.dim = int(own["spacedim"][0])
+            self.mu = own["vectors/mu"][:].astype(float)
+            if "W" in own:
+                self.w, self.q = stored(own["W"]), own["vectors/q"][:].astype(float)
+            else:
+                # M v = H r + f, u = Hᵀ v + w.
+                m, h = sparse.csc_matrix(stored(own["M"])), sparse.csc_matrix(stored(own["H"]))
+                moved = splu(m).solve(np.column_stack([h.toarray(), own["vectors/f"][:]]))
+                w = sparse.csc_matrix(h.T @ moved[:, :-1])
+                self.w = w if w.nnz < SPARSE * w.shape[0] ** 2 else w.toarray()
+                self.q = own["vectors/w"][:] + h.T @ moved[:, -1]
         self.points = len(self.mu)
         # Points without friction have only their normal row, as in stickslip.
         self.used = np.ones(len(self.q), bool).reshape(self.points, self.dim)
         self.used[self.mu == 0, 1:] = False
         self.used = self.used.ravel()
-        self.rho = self.used.sum() / np.trace(self.w[np.ix_(self.used, self.used)])
+        self.rho = self.used.sum() / self.w.diagonal()[self.used].sum()
         self.size = np.linalg.norm(self.q) or 1.0
         self.path = path
 
@@ -54,7 +67,8 @@ class Problem:
 
         Solvers stop at residuals that depend on units, so they get none: W' has a mean diagonal of 1.
         """
-        return np.asfortranarray(self.w * self.rho), self.q / self.size
+        w = self.w * self.rho
+        return w if sparse.issparse(w) else np.asfortranarray(w), self.q / self.size
 
     def in_space(self):
         """The same in 3D: a plane problem gets a second tangent along which nothing pushes and nothing is coupled."""
@@ -62,8 +76,15 @@ class Problem:
         if self.dim == 3:
             return w, q
         rows = np.arange(3 * self.points).reshape(-1, 3)[:, :2].ravel()
-        lifted, far = np.eye(3 * self.points, order="F"), np.zeros(3 * self.points)
-        lifted[np.ix_(rows, rows)], far[rows] = w, q
+        far = np.zeros(3 * self.points)
+        far[rows] = q
+        if sparse.issparse(w):
+            w, shape = w.tocoo(), (3 * self.points, 3 * self.points)
+            third = np.arange(2, 3 * self.points, 3)
+            places = np.append(rows[w.row], third), np.append(rows[w.col], third)
+            return sparse.csc_matrix((np.append(w.data, np.ones(self.points)), places), shape), far
+        lifted = np.eye(3 * self.points, order="F")
+        lifted[np.ix_(rows, rows)] = w
         return lifted, far
 
     def from_space(self, r):
@@ -84,18 +105,28 @@ class Problem:
         return 0.0 if e == 0 else e / reference
 
 
-def dense(group):
-    """A stored matrix, whichever way it is stored."""
+def stored(group):
+    """A matrix, whichever way it is stored: sparse where few of its entries are not 0."""
     m, n, nz = (int(group[name][0]) for name in ("m", "n", "nz"))
     p, i, x = (group[name][:] for name in ("p", "i", "x"))
-    matrix = np.zeros((m, n))
     if nz >= 0:
-        np.add.at(matrix, (i[:nz], p[:nz]), x[:nz])
-        return matrix
-    lines = np.repeat(np.arange(len(p) - 1), np.diff(p))
-    inner, x = i[: p[-1]], x[: p[-1]]
-    np.add.at(matrix, (inner, lines) if nz == -1 else (lines, inner), x)
-    return matrix
+        matrix = sparse.coo_matrix((x[:nz], (i[:nz], p[:nz])), (m, n)).tocsc()
+    else:
+        matrix = (sparse.csc_matrix if nz == -1 else sparse.csr_matrix)((x[: p[-1]], i[: p[-1]], p), (m, n)).tocsc()
+    return matrix if matrix.nnz < SPARSE * m * n else matrix.toarray()
+
+
+def write_local(problem, path):
+    """The problem as an FCLIB file."""
+    w = sparse.coo_matrix(problem.w)
+    whole = lambda *values: np.array(values, dtype="i4")
+    with h5py.File(path, "w") as file:
+        file["fclib_local/spacedim"] = whole(problem.dim)
+        sizes = {"m": w.shape[0], "n": w.shape[1], "nz": w.nnz, "nzmax": w.nnz}
+        parts = {name: whole(size) for name, size in sizes.items()} | {"i": w.row, "p": w.col, "x": w.data}
+        for name, values in parts.items():
+            file[f"fclib_local/W/{name}"] = values
+        file["fclib_local/vectors/q"], file["fclib_local/vectors/mu"] = problem.q, problem.mu
 
 
 def projected(z, mu):
@@ -145,31 +176,29 @@ def attempt(peer, problem, solver, tolerance, iterations, repeats, limit):
 
 
 def run(peer, problem, solver, iterations, arguments):
-    """Tightens the tolerance of the solver until the natural map is small enough."""
-    tolerance, attempts, last = arguments.tolerance, 0, None
-    while tolerance >= SMALLEST_TOLERANCE:
-        attempts += 1
+    """Tightens the tolerance of the solver until the natural map is small enough to be timed, and then as far as it follows."""
+    row, solved, reached = {}, {}, np.inf
+    for attempts, tolerance in enumerate(TOLERANCES, 1):
         answer, status = attempt(peer, problem, solver, tolerance, iterations, 1, arguments.limit)
+        row = {"status": status, "tolerance": tolerance, "attempts": attempts}
         if answer is None:
-            return {"status": status, "tolerance": tolerance, "attempts": attempts, "repeats": 1}
-        answer["natural_map"] = problem.natural_map(answer["r"])
-        last = {**answer, "tolerance": tolerance, "attempts": attempts, "status": "not-reached", "repeats": 1}
-        if answer["natural_map"] <= arguments.target:
-            last["status"] = "solved"
             break
-        if answer["info"] != 0:
-            # It did not even reach what it was asked for.
-            last["status"] = "gave-up"
+        natural_map = problem.natural_map(answer["r"])
+        reached = min(reached, natural_map)
+        # Reports success, or did not even reach what it was asked for.
+        row |= answer | {"natural_map": natural_map, "status": "gave-up" if answer["info"] != 0 else "not-reached"}
+        if natural_map <= arguments.target:
+            solved = solved or row | {"status": "solved"}
+        if natural_map <= arguments.reach or answer["info"] != 0:
             break
-        tolerance *= 0.1
-    # Long calls are timed as often as the limit allows.
-    repeats = min(arguments.repeats, int(arguments.limit / max(last["time_s"], 1e-9)))
-    if last["status"] == "solved" and repeats > 1:
-        again = (peer, problem, solver, tolerance, iterations, repeats, 2 * arguments.limit)
-        answer, _ = attempt(*again)
+    row = (solved or row) | {"reached": reached, "repeats": 1}
+    # Long calls are timed as often as a part of the limit allows.
+    repeats = min(arguments.repeats, int(0.1 * arguments.limit / max(row.get("time_s", 0.0), 1e-9)))
+    if solved and repeats > 1:
+        answer, _ = attempt(peer, problem, solver, row["tolerance"], iterations, repeats, arguments.limit)
         if answer is not None:
-            last.update(time_s=answer["time_s"], repeats=repeats)
-    return last
+            row |= {"time_s": min(answer["time_s"], row["time_s"]), "repeats": repeats}
+    return row
 
 
 def write_vector(path, values):
@@ -181,20 +210,21 @@ def write_vector(path, values):
 def main(peer):
     """The command line of a peer."""
     parser = argparse.ArgumentParser(description=peer.__doc__.split("\n")[0])
-    parser.add_argument("files", nargs="+", type=Path, help="FCLIB local problems (HDF5)")
+    parser.add_argument("files", nargs="+", type=Path, help="FCLIB problems (HDF5)")
     parser.add_argument("--solver", action="append", help="e.g. NSGS, NSN_AC; may be repeated; default: all listed")
     parser.add_argument("--target", type=float, default=1e-9, help="natural map to reach (1e-9)")
-    parser.add_argument("--tolerance", type=float, default=1e-8, help="first tolerance given to the solver (1e-8)")
+    parser.add_argument("--reach", type=float, default=1e-12, help="natural map from which on no smaller one is looked for (1e-12)")
     parser.add_argument("--repeats", type=int, default=5, help="timed calls, the best counts (5)")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds per call, and for all repeats (60)")
-    parser.add_argument("--out", type=Path, default=Path("peers"), help="folder for the table and the reactions")
+    parser.add_argument("--out", type=Path, default=Path("peers"), help="folder for the reactions and the table, to which rows are added")
     arguments = parser.parse_args()
 
     arguments.out.mkdir(parents=True, exist_ok=True)
     table = arguments.out / f"{peer.NAME}.csv"
-    with open(table, "w", newline="") as file:
+    with open(table, "a", newline="") as file:
         rows = csv.DictWriter(file, COLUMNS, restval="")
-        rows.writeheader()
+        if file.tell() == 0:
+            rows.writeheader()
         for path in arguments.files:
             name = path.name.removesuffix(".hdf5")
             try:
@@ -220,3 +250,7 @@ def main(peer):
                 numbers = [f"{key} {row[key]:.3g}" for key in ("natural_map", "tolerance", "time_s") if key in row]
                 print(f"{name} {solver}: {row['status']}, {row.get('iterations', '-')} iterations", *numbers, sep=", ")
     print(f"{peer.NAME} {peer.VERSION}: {table}")
+
+
+if __name__ == "__main__":
+    write_local(Problem(Path(sys.argv[1])), sys.argv[2])

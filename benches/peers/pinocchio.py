@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the contact solvers of Pinocchio on FCLIB local problems and writes one CSV row per file and solver.
 
-    python3 -m venv peers && peers/bin/pip install pin h5py       # PyPI; brings NumPy
+    python3 -m venv peers && peers/bin/pip install pin h5py scipy # PyPI; brings NumPy
     peers/bin/python benches/peers/pinocchio.py problems/*.local.hdf5 --out peers
 
 As siconos.py: from the same files, from r = 0, to the same natural map. Its points have their normal last and live in space.
@@ -23,8 +23,9 @@ try:
     import h5py  # noqa: F401
     import numpy as np
     import pinocchio as pin
+    import scipy.sparse as sparse
 except ImportError as missing:
-    print(f"skipped: {missing} (PyPI: pip install pin h5py)")
+    print(f"skipped: {missing} (PyPI: pip install pin h5py scipy)")
     sys.exit(0)
 
 sys.path.append(str(here))
@@ -32,6 +33,8 @@ import peer  # noqa: E402
 
 NAME, VERSION = "pinocchio", pin.__version__
 
+# A dense W of so many rows takes 0.8 GB, and there are copies.
+MOST_ROWS = 10_000
 SOLVERS = {"PGS": 1_000_000, "ADMM": 1_000_000, "ADMM_SPECTRAL": 1_000_000, "ADMM_ANDERSON": 1_000_000}
 # What the settings of a variant differ in.
 VARIANTS = {
@@ -49,6 +52,10 @@ def solve(problem, solver, tolerance, iterations, repeats):
     """See peer.py."""
     family = solver.split("_")[0]
     w, q = problem.in_space()
+    if sparse.issparse(w):
+        if len(q) > MOST_ROWS:
+            raise peer.Refused(f"its W is dense: {len(q)} rows take more memory than there may be")
+        w = w.toarray()
     order = np.arange(len(q)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     w, q = np.asfortranarray(w[np.ix_(order, order)]), q[order]
     model = pin.Model()

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Exports the problems, runs stickslip and all peers on them, and writes the tables of reports/peers into OUT.
-#   benches/peers/run.sh OUT [PYTHON_WITH_PIN]
-# Needs Debian's python3-siconos, python3-h5py and python3-scipy, and for Pinocchio a Python with `pin` and `h5py`.
+# Exports the problems, runs stickslip and all peers on them and on further FCLIB files, and writes the tables of reports/peers into OUT/tables.
+#   benches/peers/run.sh OUT [FILE ...]
+# Needs gcc and Debian's python3-siconos, python3-h5py, python3-scipy and python3-matplotlib, and for Pinocchio PIN, a Python with
+# `pin`, `h5py` and `scipy`. OUT must be new: rows are added to tables.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 out=$1
-python_with_pin=${2:-python3}
+shift
 stickslip=${STICKSLIP:-target/release/stickslip}
 
 problem() {
@@ -29,18 +30,29 @@ problem benches/peers/slab.toml
 sed 's/^friction = 0.5$/friction = 0.1/' benches/peers/slab.toml > "$out/slab_slippery.toml"
 problem "$out/slab_slippery.toml"
 
-# Few repeats where a call takes a second.
-small=() large=()
-for file in "$out"/problems/*.local.hdf5; do
-    case $file in
-        */slab*) large+=("$file") ;;
-        *) small+=("$file") ;;
-    esac
+for file in "$@"; do
+    name=$(basename "$file" .hdf5)
+    /usr/bin/python3 benches/peers/peer.py "$file" "$out/problems/${name%.local}.local.hdf5"
 done
-"$stickslip" solve "${small[@]}" --repeats 50 --out "$out/ours" || true
-# The others take minutes there.
-"$stickslip" solve "${large[@]}" -m hybrid -m pdas --repeats 3 --out "$out/ours_large" || true
-{ cat "$out/ours/runs.csv"; tail -n +2 "$out/ours_large/runs.csv"; } > "$out/runs.csv"
-/usr/bin/python3 benches/peers/siconos.py "${small[@]}" "${large[@]}" --repeats 50 --out "$out"
-"$python_with_pin" benches/peers/pinocchio.py "${small[@]}" "${large[@]}" --repeats 50 --out "$out"
-/usr/bin/python3 benches/peers/compare.py "$out/problems" "$out/runs.csv" "$out/siconos.csv" "$out/pinocchio.csv" --out "$out"
+# One file after the other by all programs, so that drift of the machine meets them alike.
+for file in "$out"/problems/*.local.hdf5; do
+    name=$(basename "$file" .hdf5)
+    solvers=() methods=() limit=20 repeats=50
+    # The others do not get there in a minute, or take many.
+    case $name in slab*)
+        solvers=(--solver ADMM --solver NSN_AC_HYBRID --solver NSN_AC_TEST_PLAIN --solver NSGS_LIGHT)
+        methods=(-m hybrid -m pdas -m newton-ac) limit=60 repeats=3 ;;
+    esac
+    /usr/bin/python3 benches/peers/siconos.py "$file" "${solvers[@]}" --repeats 50 --limit $limit --out "$out"
+    "$stickslip" solve "$file" "${methods[@]}" --repeats $repeats --time-limit $limit --quiet --out "$out/ours/$name" || true
+    case $name in slab*) ;; *) ${PIN:-true} benches/peers/pinocchio.py "$file" --repeats 50 --limit $limit --out "$out" ;; esac
+done
+# How small a natural map can be had.
+{
+    printf 'title = "Success"\n[[cells]]\ntolerances = [1e-12]\n'
+    printf 'methods = ["hybrid", "ipm-anm", "newton-ac", "pdas", "gnm", "b-newton"]\nfiles = [\n'
+    (cd "$out" && printf '    "%s",\n' problems/*.local.hdf5)
+    printf ']\n'
+} > "$out/success.toml"
+"$stickslip" study "$out/success.toml" --untimed --time-limit 20 --quiet --out "$out/ours/success" || true
+/usr/bin/python3 benches/peers/compare.py "$out" --out "$out/tables"
