@@ -11,7 +11,7 @@ use crate::algebra::strips::{lu, permute_rows};
 
 /// Ratio of pivots below which a matrix counts as singular, times its size.
 pub(crate) const SINGULAR: f64 = 1e-15;
-/// Up to this size plain loops are faster than blocks, whose set-up costs more than it gains.
+/// Up to this size plain loops factor faster than blocks, whose set-up costs more than it gains.
 const PLAIN: usize = 48;
 
 /// LU factors of a regular matrix. The memory of one serves the next.
@@ -79,28 +79,17 @@ impl DenseLu {
         self.solve_into(b, &mut x).then_some(x)
     }
 
-    /// X := A⁻¹ X.
+    /// X := A⁻¹ X, by blocks.
     pub fn solve_in_place(&self, mut x: MatMut<'_, f64>) {
         permute_rows(x.rb_mut(), &self.rows);
-        self.substitute(x);
-    }
-
-    /// X := U⁻¹ L⁻¹ X, by blocks.
-    fn substitute(&self, mut x: MatMut<'_, f64>) {
         solve_unit_lower_triangular_in_place(self.factors.view(), x.rb_mut(), Par::Seq);
         solve_upper_triangular_in_place(self.factors.view(), x, Par::Seq);
     }
 
-    /// The same in place of what `x` holds; false if it is not finite.
+    /// x := A⁻¹ b in place of what `x` holds; false if it is not finite. For one vector blocks gain nothing at any size.
     pub fn solve_into(&self, b: &[f64], x: &mut Vec<f64>) -> bool {
-        x.clear();
-        x.extend(self.rows.iter().map(|&i| b[i]));
-        let n = self.factors.size();
-        if n <= PLAIN {
-            plain::solve(&self.factors, x);
-        } else {
-            self.substitute(MatMut::from_column_major_slice_mut(x, n, 1));
-        }
+        refill(x, self.rows.iter().map(|&i| b[i]));
+        plain::solve(&self.factors, x);
         x.iter().all(|v| v.is_finite())
     }
 }
