@@ -83,6 +83,11 @@ def compared(case, points, own, peers, folder):
     return row
 
 
+def called(low, high):
+    """A size in words."""
+    return f"{low + 1} to {high}" if high < np.inf else f"over {low}"
+
+
 def rates(reached, cases):
     """Part of the cases whose least map, by case, is at most each tolerance."""
     maps = np.array([reached.get(case, np.inf) for case in cases])
@@ -116,7 +121,7 @@ def success(points, reached):
     for low, high in SIZES:
         cases = [case for case, own in points.items() if low < own <= high]
         for (program, solver), own in reached.items():
-            row = {"points": f"{low + 1} to {high}" if high < np.inf else f"over {low}", "problems": len(cases), "program": program}
+            row = {"points": called(low, high), "problems": len(cases), "program": program}
             table.append(row | {"solver": solver} | {f"{t:.0e}": f"{rate:.3f}" for t, rate in zip(TOLERANCES, rates(own, cases))})
     return table
 
@@ -132,8 +137,8 @@ def draw(table, path):
         solvers = dict.fromkeys(row["solver"] for row in table if row["program"] == program and row["solver"] != "best")
         most = max(solvers, key=lambda name: total([row for row in table if (row["program"], row["solver"]) == (program, name)]))
         shown[program] = ["best", DEFAULT if program == "stickslip" else most]
-    for panel, (low, high), published in zip(panels, SIZES, PUBLISHED):
-        name = f"{low + 1} to {high}" if high < np.inf else f"over {low}"
+    for panel, size, published in zip(panels, SIZES, PUBLISHED):
+        name = called(*size)
         own = [row for row in table if row["points"] == name]
         for program, solvers in shown.items():
             for solver, style in zip(solvers, ("-", "--")):
