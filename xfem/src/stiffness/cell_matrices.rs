@@ -14,9 +14,6 @@ use super::orthonormal::SolverBasis;
 /// Shape up to translation, in quanta of length.
 type ShapeKey = [i64; 3 * (MOST_NODES - 1)];
 
-/// Enriched cells worked on at once: enough for all threads, few beside all matrices.
-const AT_ONCE: usize = 4096;
-
 /// Stiffness matrices of all cells over their functions.
 pub struct CellMatrices {
     /// Those of plain cells, one per shape.
@@ -64,16 +61,14 @@ impl CellMatrices {
             enriched.push((cell as u32, total));
             total += (enrichment.cell(cell).len() * mesh.dim()).pow(2);
         }
-        let mut own = Vec::with_capacity(total);
-        for some in enriched.chunks(AT_ONCE) {
-            let stiffness = |&(cell, _): &(u32, usize)| {
-                let cell = cell as usize;
-                integrator.stiffness(cell, &plain[shape[cell] as usize])
-            };
-            let matrices = some.par_iter().map(stiffness);
-            for k in matrices.collect::<Result<Vec<_>, _>>()? {
-                own.extend_from_slice(k.as_slice());
-            }
+        let mut own = vec![0.0; total];
+        let failed =
+            (parts(&mut own, &enriched).into_par_iter()).find_map_first(|(cell, place)| {
+                let k = integrator.stiffness(cell, &plain[shape[cell] as usize]);
+                k.map(|k| place.copy_from_slice(k.as_slice())).err()
+            });
+        if let Some(error) = failed {
+            return Err(error);
         }
         let mut of_cell = shape;
         for (place, &(cell, _)) in enriched.iter().enumerate() {
@@ -103,18 +98,28 @@ impl CellMatrices {
     /// Goes over to the basis of the solver.
     pub fn transform(&mut self, integrator: &CellIntegrator<'_>, basis: &SolverBasis) {
         let (dim, enrichment) = (integrator.mesh.dim(), integrator.enrichment);
-        for some in self.enriched.chunks(AT_ONCE) {
-            let changed = some.par_iter().map(|&(cell, from)| {
-                let cell = cell as usize;
-                let k = basis.matrix(dim, enrichment.cell(cell), self.of(cell));
-                k.map(|k| (from, k))
-            });
-            for (from, k) in changed.collect::<Vec<_>>().into_iter().flatten() {
-                let values = k.as_slice();
-                self.own[from..from + values.len()].copy_from_slice(values);
+        let all = parts(&mut self.own, &self.enriched);
+        all.into_par_iter().for_each(|(cell, place)| {
+            let size = place.len().isqrt();
+            let k = CellView::from_slice(place, size, size);
+            if let Some(k) = basis.matrix(dim, enrichment.cell(cell), k) {
+                place.copy_from_slice(k.as_slice());
             }
-        }
+        });
     }
+}
+
+/// The matrices of enriched cells, each where it begins.
+fn parts<'a>(own: &'a mut [f64], enriched: &[(u32, usize)]) -> Vec<(usize, &'a mut [f64])> {
+    let (mut rest, mut parts) = (own, Vec::with_capacity(enriched.len()));
+    // From the last on: one ends where the next begins.
+    for &(cell, from) in enriched.iter().rev() {
+        let (before, part) = rest.split_at_mut(from);
+        parts.push((cell as usize, part));
+        rest = before;
+    }
+    parts.reverse();
+    parts
 }
 
 /// Cells with equal keys share one standard stiffness; `quantum`: length below which they are equal [m].
