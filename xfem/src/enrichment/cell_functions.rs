@@ -1,5 +1,6 @@
 //! The functions of one cell, evaluated point by point.
 
+use std::array::from_fn;
 use std::mem::take;
 
 use crate::geometry::tip_frame::TipFrame;
@@ -114,7 +115,8 @@ impl<'a> CellFunctions<'a> {
     ) {
         let n = self.map.kind.shapes(xi);
         let dn = self.map.slopes(xi, self.inverse.as_ref());
-        let mut cached: Option<Branches<L>> = None;
+        // Tip, branch functions with gradients, ramp with gradient.
+        let mut cached: Option<(u32, _, _)> = None;
         let count = self.functions.len();
         let steps = &self.steps[region * count..(region + 1) * count];
         for (place, (f, step)) in self.functions.iter().zip(steps).enumerate() {
@@ -129,38 +131,28 @@ impl<'a> CellFunctions<'a> {
                     put(place, &[0.0; L], &[[0.0; L]; 3])
                 }
                 FunctionKind::Branch { tip, order } => {
-                    if cached.as_ref().is_some_and(|known| known.tip != tip) {
-                        cached = None;
-                    }
-                    let branches = cached.get_or_insert_with(|| {
-                        let side = (*step != 0.0).then_some(*step);
-                        let (values, gradients) = self.tips[tip as usize].branches(x, side);
-                        let nodes = self.map.len();
-                        let (ramp, ramp_gradient) = ramp(f.ramp, &n[..nodes], &dn[..nodes]);
-                        Branches {
-                            tip,
-                            values,
-                            gradients,
-                            ramp,
-                            ramp_gradient,
+                    let (_, (g, dg), (rho, drho)) = match &mut cached {
+                        Some(known) if known.0 == tip => &*known,
+                        other => {
+                            let side = (*step != 0.0).then_some(*step);
+                            let branches = self.tips[tip as usize].branches(x, side);
+                            let nodes = self.map.len();
+                            let ramp = ramp(f.ramp, &n[..nodes], &dn[..nodes]);
+                            other.insert((tip, branches, ramp))
                         }
-                    });
-                    let (g, dg) = (
-                        &branches.values[order as usize],
-                        &branches.gradients[order as usize],
-                    );
-                    let (rho, drho) = (&branches.ramp, &branches.ramp_gradient);
-                    let (mut value, mut gradient) = ([0.0; L], [[0.0; L]; 3]);
-                    for q in 0..L {
-                        value[q] = ni[q] * (g[q] - f.shift) * rho[q];
-                    }
-                    for a in 0..3 {
-                        for q in 0..L {
-                            let h = g[q] - f.shift;
-                            let slope = dg[a][q] * rho[q] + h * drho[a][q];
-                            gradient[a][q] = dni[a][q] * h * rho[q] + ni[q] * slope;
-                        }
-                    }
+                    };
+                    // As values: what is behind references the compiler takes one by one.
+                    let (g, dg) = (g[order as usize], dg[order as usize]);
+                    let (rho, drho, ni, dni) = (*rho, *drho, *ni, *dni);
+                    let h: [f64; L] = from_fn(|q| g[q] - f.shift);
+                    let value = from_fn(|q| ni[q] * h[q] * rho[q]);
+                    let slope = |a: usize| -> [f64; L] {
+                        from_fn(|q| {
+                            let slope = dg[a][q] * rho[q] + h[q] * drho[a][q];
+                            dni[a][q] * h[q] * rho[q] + ni[q] * slope
+                        })
+                    };
+                    let gradient = [slope(0), slope(1), slope(2)];
                     put(place, &value, &gradient);
                 }
             }
@@ -197,12 +189,8 @@ impl<'a> CellFunctions<'a> {
                     other.insert((tip, g, ramp_value(f.ramp, &n[..self.map.len()])))
                 }
             };
-            let (g, ni) = (&g[order as usize], &n[f.local]);
-            let mut value = [0.0; L];
-            for q in 0..L {
-                value[q] = ni[q] * (g[q] - f.shift) * rho[q];
-            }
-            put(place, &value);
+            let (g, ni, rho) = (g[order as usize], n[f.local], *rho);
+            put(place, &from_fn(|q| ni[q] * (g[q] - f.shift) * rho[q]));
         }
     }
 
@@ -234,15 +222,6 @@ impl<'a> CellFunctions<'a> {
         let [one, two] = regions.map(|region| self.field(xi, x, region, u).0);
         sub(&one, &two)
     }
-}
-
-/// Branch functions of one tip and their ramp at L points.
-struct Branches<const L: usize> {
-    tip: u32,
-    values: [[f64; L]; 4],
-    gradients: [Points<L>; 4],
-    ramp: [f64; L],
-    ramp_gradient: Points<L>,
 }
 
 /// ρ = Σ N_i over the nodes of a mask; exactly 1 over all of them.

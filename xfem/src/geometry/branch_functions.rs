@@ -1,41 +1,58 @@
 //! Branch functions of the coordinates ahead of a tip and across its crack: of one tip, of both ends of a crack.
 
-/// √r times sin θ/2, cos θ/2, sin θ/2 sin θ, cos θ/2 sin θ. Without branches, so that several points go at once.
+use std::array::from_fn;
+
+/// √r times sin θ/2, cos θ/2, sin θ/2 sin θ, cos θ/2 sin θ at L points.
 #[inline(always)]
-pub(super) fn root_values(psi: f64, phi: f64) -> [f64; 4] {
-    let r = (psi * psi + phi * phi).sqrt();
-    let ([sin, _], [s, c]) = (polar(psi, phi, r), half_polar(psi, phi, r));
-    [s, c, s * sin, c * sin].map(|f| r.sqrt() * f)
+pub(super) fn root_values<const L: usize>(psi: &[f64; L], phi: &[f64; L]) -> [[f64; L]; 4] {
+    let [r, sin, _, s, c] = polar(psi, phi);
+    [s, c, times(&s, &sin), times(&c, &sin)].map(|f| times(&r.map(f64::sqrt), &f))
 }
 
 /// The same with their derivatives ahead and across; these are 0 at the tip, for want of a limit.
 #[inline(always)]
-pub(super) fn root_functions(psi: f64, phi: f64) -> ([f64; 4], [[f64; 2]; 4]) {
-    let r = (psi * psi + phi * phi).sqrt();
-    let root = r.sqrt();
-    let inverse = if r > 0.0 { 1.0 / root } else { 0.0 };
-    let ([sin, cos], [s, c]) = (polar(psi, phi, r), half_polar(psi, phi, r));
-    let angular = [s, c, s * sin, c * sin];
-    let slope = [
-        0.5 * c,
-        -0.5 * s,
-        0.5 * c * sin + s * cos,
-        -0.5 * s * sin + c * cos,
+pub(super) fn root_functions<const L: usize>(psi: &[f64; L], phi: &[f64; L]) -> [[[f64; L]; 3]; 4] {
+    let [r, sin, cos, s, c] = polar(psi, phi);
+    let root = r.map(f64::sqrt);
+    let over = root.map(|root| 1.0 / root);
+    let inverse = from_fn(|q| if r[q] > 0.0 { over[q] } else { 0.0 });
+    let angular = [s, c, times(&s, &sin), times(&c, &sin)];
+    let slopes: [[f64; L]; 4] = [
+        c.map(|c| 0.5 * c),
+        s.map(|s| -0.5 * s),
+        from_fn(|q| 0.5 * c[q] * sin[q] + s[q] * cos[q]),
+        from_fn(|q| -0.5 * s[q] * sin[q] + c[q] * cos[q]),
     ];
-    let mut slopes = [[0.0; 2]; 4];
-    for l in 0..4 {
+    from_fn(|l| {
         // ∂g/∂r = f/(2√r), (1/r) ∂g/∂θ = f'/√r, turned into space
-        let (gr, gt) = (0.5 * angular[l] * inverse, slope[l] * inverse);
-        slopes[l] = [gr * cos - gt * sin, gr * sin + gt * cos];
-    }
-    (angular.map(|f| root * f), slopes)
+        let gr = times(&angular[l].map(|f| 0.5 * f), &inverse);
+        let gt = times(&slopes[l], &inverse);
+        let ahead = from_fn(|q| gr[q] * cos[q] - gt[q] * sin[q]);
+        let across = from_fn(|q| gr[q] * sin[q] + gt[q] * cos[q]);
+        [times(&root, &angular[l]), ahead, across]
+    })
 }
 
-/// sin θ and cos θ of a point at distance r from the tip; those of θ = 0 at the tip itself.
 #[inline(always)]
-fn polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
-    let (sin, cos) = (phi / r, psi / r);
-    if r > 0.0 { [sin, cos] } else { [0.0, 1.0] }
+fn times<const L: usize>(x: &[f64; L], y: &[f64; L]) -> [f64; L] {
+    from_fn(|q| x[q] * y[q])
+}
+
+/// r, sin θ, cos θ, sin θ/2 and cos θ/2; those of θ = 0 at the tip itself. Without branches, so that several points go at once.
+#[inline(always)]
+fn polar<const L: usize>(psi: &[f64; L], phi: &[f64; L]) -> [[f64; L]; 5] {
+    let r: [f64; L] = from_fn(|q| (psi[q] * psi[q] + phi[q] * phi[q]).sqrt());
+    let [sin, cos]: [[f64; L]; 2] = [phi, psi].map(|x| from_fn(|q| x[q] / r[q]));
+    let half: [[f64; 2]; L] = from_fn(|q| half_polar(psi[q], phi[q], r[q]));
+    let [s, c] = [0, 1].map(|k| half.map(|half| half[k]));
+    let sin = from_fn(|q| if r[q] > 0.0 { sin[q] } else { 0.0 });
+    [
+        r,
+        sin,
+        from_fn(|q| if r[q] > 0.0 { cos[q] } else { 1.0 }),
+        s,
+        c,
+    ]
 }
 
 /// sin θ/2 and cos θ/2, −π <= θ <= π, the larger of both from (1 ± cos θ)/2, which cancels nothing, and the other from
@@ -50,7 +67,7 @@ fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
     if r == 0.0 { [0.0, 1.0] } else { [s, c] }
 }
 
-/// Functions of both ends ± a of a straight crack and their derivatives along and across it (Westergaard 1939).
+/// Functions of both ends ± a of a straight crack, each with its derivatives along and across it (Westergaard 1939).
 ///
 /// ```text
 ///   z = x + i y,   ζ = √(z² − a²) ~ z far away, cut between the ends only,   Z = dζ/dz = z/ζ
@@ -58,7 +75,7 @@ fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
 /// ```
 ///
 /// They hold the displacement of a crack in an infinite plane under uniform load, less its linear part.
-pub(super) fn pair_functions(a: f64, x: f64, y: f64) -> ([f64; 4], [[f64; 2]; 4]) {
+pub(super) fn pair_functions(a: f64, x: f64, y: f64) -> [[f64; 3]; 4] {
     let root = |x: f64| {
         let r = x.hypot(y);
         let [s, c] = half_polar(x, y, r);
@@ -69,7 +86,7 @@ pub(super) fn pair_functions(a: f64, x: f64, y: f64) -> ([f64; 4], [[f64; 2]; 4]
     let square = re * re + im * im;
     let values = |z: [f64; 2]| [im - y, re - x, y * (z[0] - 1.0), y * z[1]];
     if square == 0.0 {
-        return (values([1.0, 0.0]), [[0.0; 2]; 4]);
+        return values([1.0, 0.0]).map(|value| [value, 0.0, 0.0]);
     }
     let inverse = [re / square, -im / square];
     let z = product([x, y], inverse);
@@ -77,11 +94,11 @@ pub(super) fn pair_functions(a: f64, x: f64, y: f64) -> ([f64; 4], [[f64; 2]; 4]
     let [z2, z2i] = product(z, z);
     let dz = product([1.0 - z2, -z2i], inverse);
     // f analytic: ∂x Re f = Re f', ∂y Re f = −Im f', ∂x Im f = Im f', ∂y Im f = Re f'
-    let slopes = [
-        [z[1], z[0] - 1.0],
-        [z[0] - 1.0, -z[1]],
-        [y * dz[0], z[0] - 1.0 - y * dz[1]],
-        [y * dz[1], z[1] + y * dz[0]],
-    ];
-    (values(z), slopes)
+    let values = values(z);
+    [
+        [values[0], z[1], z[0] - 1.0],
+        [values[1], z[0] - 1.0, -z[1]],
+        [values[2], y * dz[0], z[0] - 1.0 - y * dz[1]],
+        [values[3], y * dz[1], z[1] + y * dz[0]],
+    ]
 }

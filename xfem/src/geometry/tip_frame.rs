@@ -1,5 +1,7 @@
 //! Tips and fronts of cracks with their coordinates: distance ahead along the crack, distance from it.
 
+use std::array::from_fn;
+
 use super::boxes::{Extents, around};
 use super::branch_functions::{pair_functions, root_functions, root_values};
 use super::clip::Side;
@@ -293,15 +295,11 @@ impl TipFrame {
         side: Option<Side>,
     ) -> [[f64; L]; 4] {
         let ([psi, phi], _) = self.placed(x, side);
-        let mut values = [[0.0; L]; 4];
-        for q in 0..L {
-            let own = match self.shape {
-                FrontShape::Pair { half_length } => pair_functions(half_length, psi[q], phi[q]).0,
-                _ => root_values(psi[q], phi[q]),
-            };
-            (0..4).for_each(|l| values[l][q] = own[l]);
-        }
-        values
+        let FrontShape::Pair { half_length } = self.shape else {
+            return root_values(&psi, &phi);
+        };
+        let own: [_; L] = from_fn(|q| pair_functions(half_length, psi[q], phi[q]));
+        from_fn(|l| own.map(|own| own[l][0]))
     }
 
     /// The same with their gradients, by function, direction and point.
@@ -313,25 +311,16 @@ impl TipFrame {
     ) -> ([[f64; L]; 4], [Points<L>; 4]) {
         let ([psi, phi], [ahead, across]) = self.placed(x, side);
         // By function: value, slope ahead, slope across.
-        let mut g = [[[0.0; L]; 3]; 4];
-        for q in 0..L {
-            let (values, slopes) = match self.shape {
-                FrontShape::Pair { half_length } => pair_functions(half_length, psi[q], phi[q]),
-                _ => root_functions(psi[q], phi[q]),
-            };
-            for l in 0..4 {
-                (g[l][0][q], g[l][1][q], g[l][2][q]) = (values[l], slopes[l][0], slopes[l][1]);
-            }
-        }
-        let mut gradients = [[[0.0; L]; 3]; 4];
-        for (gradient, [_, g1, g2]) in gradients.iter_mut().zip(&g) {
-            for a in 0..3 {
-                for q in 0..L {
-                    gradient[a][q] = g1[q] * ahead[a][q] + g2[q] * across[a][q];
-                }
-            }
-        }
-        (g.map(|g| g[0]), gradients)
+        let g: [[[f64; L]; 3]; 4] = if let FrontShape::Pair { half_length } = self.shape {
+            let own: [_; L] = from_fn(|q| pair_functions(half_length, psi[q], phi[q]));
+            from_fn(|l| from_fn(|k| own.map(|own| own[l][k])))
+        } else {
+            root_functions(&psi, &phi)
+        };
+        let gradient = |[_, g1, g2]: [[f64; L]; 3]| {
+            from_fn(|a| from_fn(|q| g1[q] * ahead[a][q] + g2[q] * across[a][q]))
+        };
+        (g.map(|g| g[0]), g.map(gradient))
     }
 }
 

@@ -57,10 +57,8 @@ pub fn front_facet_points<F: Fn(&Point) -> Option<Point>>(
         for &(t, weight) in &across {
             let rho = 0.5 * ((to - from) * t + from + to);
             let weight = ds * (to - from) * rho * weight; // dw = 2 ρ dρ
-            points.push(WeightedPoint::new(
-                add_scaled(&tip, rho * rho, &back),
-                weight,
-            ));
+            let x = add_scaled(&tip, rho * rho, &back);
+            points.push(WeightedPoint::new(x, weight));
         }
     }
     points

@@ -117,13 +117,11 @@ fn outside_points(
             let r = edges.map(|(c, pole, most)| (c / (pole - theta).sin()).min(most).max(0.0));
             let (from, to) = (r[0].min(r[1]).sqrt(), r[0].max(r[1]).sqrt());
             let direction = add_scaled(&e0.map(|v| v * theta.cos()), theta.sin(), &e1);
-            for &(x, wx) in &radial {
-                let rho = 0.5 * ((to - from) * x + from + to);
+            for &(s, wx) in &radial {
+                let rho = 0.5 * ((to - from) * s + from + to);
                 let weight = 0.5 * (high - low) * wt * (to - from) * rho.powi(3) * wx;
-                points.push(WeightedPoint::new(
-                    add_scaled(tip, rho * rho, &direction),
-                    weight,
-                ));
+                let x = add_scaled(tip, rho * rho, &direction);
+                points.push(WeightedPoint::new(x, weight));
             }
         }
     }

@@ -11,6 +11,7 @@
 //! distorted cells cost as many points as their energy needs, no more. Variationally consistent integration: Chen, Hillman &
 //! Rüter, Int. J. Numer. Meth. Engng 95 (2013) 387.
 
+use std::array::from_fn;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::partition::Partition;
@@ -113,10 +114,20 @@ impl CellIntegrator<'_> {
         for region in 0..self.enrichment.regions(cell) {
             let own = points.iter().filter(|p| p.region == region);
             let own = own.map(|p| (p.xi, p.x, [p.weight]));
-            in_lanes(own, |xi, x, [weights]| {
-                functions.visit(xi, x, region, |f, _, g| gram.put(f, weights, g));
-                gram.end(weights);
-            });
+            in_lanes(
+                own,
+                #[inline(always)]
+                |xi, x, [weights]| {
+                    functions.visit(
+                        xi,
+                        x,
+                        region,
+                        #[inline(always)]
+                        |f, _, g| gram.put(f, weights, g),
+                    );
+                    gram.end(weights);
+                },
+            );
             moments.push(gram.take_moments());
         }
         let corrections = if self.is_corrected(cell, &functions) {
@@ -271,15 +282,23 @@ impl CellIntegrator<'_> {
             };
             let points: Vec<(Point, Point, [f64; 3])> =
                 points.iter().map(place).collect::<Result<_, _>>()?;
-            in_lanes(points, |xi, x, areas| {
-                functions.visit_branches((xi, x), region, which, |f, value| {
-                    for a in 0..3 {
-                        for q in 0..LANES {
-                            flux[f][a][q] += value[q] * areas[a][q];
-                        }
-                    }
-                });
-            });
+            in_lanes(
+                points,
+                #[inline(always)]
+                |xi, x, areas| {
+                    functions.visit_branches(
+                        (xi, x),
+                        region,
+                        which,
+                        #[inline(always)]
+                        |f, value| {
+                            for (sum, area) in flux[f].iter_mut().zip(areas) {
+                                *sum = from_fn(|q| sum[q] + value[q] * area[q]);
+                            }
+                        },
+                    );
+                },
+            );
             Ok::<(), CellError>(())
         };
         let own: BTreeSet<u32> = tips.iter().copied().flatten().collect();
