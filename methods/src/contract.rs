@@ -16,7 +16,7 @@ pub(crate) mod system;
 pub(crate) mod tier;
 
 pub use body_work::{ElasticCost, ElasticCounters, ElasticTimings};
-pub use elastic::{Elastic, ElasticParts, in_contact};
+pub use elastic::{Elastic, ElasticParts};
 pub use judge::{Residuals, consistency, residuals, residuals_of};
 pub use operator::{ContactOperator, DelassusForm, SWAYING};
 pub use options::{OptionError, OptionSpec, OptionValue, Options, Real, Switch, Whole};

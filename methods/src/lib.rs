@@ -35,7 +35,6 @@
 //!     jump: JumpOperator::new(2, 2, vec![0, 1, 2], vec![0, 1], vec![1.0, 1.0])?,
 //!     weight: vec![1.0],
 //!     order: vec![0, 1],
-//!     free_order: Vec::new(),
 //!     floating: vec![],
 //!     frictionless: vec![],
 //!     traction: None,

@@ -154,7 +154,6 @@ fn cracked_box(n: usize, patch: usize, floating: bool) -> ElasticParts {
         jump,
         weight,
         order,
-        free_order: Vec::new(),
         floating,
         frictionless: vec![],
         traction: None,

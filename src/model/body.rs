@@ -4,9 +4,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Instant;
 
-use stickslip_methods::{
-    Elastic, ElasticParts, JumpOperator, MethodError, SquareMatrix, in_contact,
-};
+use stickslip_methods::{Elastic, ElasticParts, JumpOperator, MethodError, SquareMatrix};
 use stickslip_xfem::discretisation::{
     CrackPlan, Discretisation, Plan, Reduced, discretise, products,
 };
@@ -165,7 +163,7 @@ impl Body {
     }
 }
 
-/// K, B and, where a method needs it, the traction operator over the free unknowns, with the orders in which K is factored.
+/// K, B and, where a method needs it, the traction operator over the free unknowns, with the order in which K is factored.
 fn system(
     discrete: &Discretisation,
     reduced: Reduced,
@@ -180,9 +178,7 @@ fn system(
     let jump = free_rows(discrete, free, &discrete.jump_rows)?;
     let of_point = |crack: usize| needs.frictionless.get(crack) == Some(&true);
     let frictionless: Vec<bool> = (discrete.points.iter().map(|p| of_point(p.crack))).collect();
-    let last = in_contact(&jump, dim, &frictionless);
-    let order = discrete.elimination_order(&last);
-    let free_order = discrete.elimination_order(&vec![false; free]);
+    let order = discrete.elimination_order();
     setup.setup_s += clock.elapsed().as_secs_f64();
     let traction = needs.traction.then(|| free_rows(discrete, free, traction));
     Elastic::new(ElasticParts {
@@ -191,7 +187,6 @@ fn system(
         jump,
         weight: discrete.points.iter().map(|p| p.weight).collect(),
         order,
-        free_order,
         floating: reduced.motions,
         frictionless,
         traction: traction.transpose()?,

@@ -163,7 +163,6 @@ pub fn global_system(problem: &GlobalProblem) -> Result<System, MethodError> {
         jump: problem.h.transposed().as_rows()?,
         weight: vec![1.0; problem.points()],
         order: minimum_degree(&stiffness)?,
-        free_order: Vec::new(),
         stiffness,
         floating: Vec::new(),
         frictionless: Vec::new(),

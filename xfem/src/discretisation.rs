@@ -271,9 +271,9 @@ impl Discretisation {
         Ok(rows)
     }
 
-    /// Elimination order of the solver's unknowns, those of `last` behind the others.
-    pub fn elimination_order(&self, last: &[bool]) -> Vec<usize> {
-        elimination_order(&self.mesh, &self.enrichment, &self.solver_numbers, last)
+    /// Elimination order of the solver's unknowns.
+    pub fn elimination_order(&self) -> Vec<usize> {
+        elimination_order(&self.mesh, &self.enrichment, &self.solver_numbers)
     }
 
     /// Number of the crack nearest to a place.

@@ -1,29 +1,16 @@
-//! How the Delassus operator W = B K⁻¹ Bᵀ follows from the factor of K.
-//!
-//! With D K D = L Lᵀ and the contact unknowns C eliminated last,
+//! How the Delassus operator W = B K⁻¹ Bᵀ follows from the factor of K: with D K D = L Lᵀ,
 //! ```text
-//! W = Yᵀ Y,   L_cc Y = (D B_c)ᵀ.
+//! W = Yᵀ Y,   L Y = (D B)ᵀ        along the tree of the factor
 //! ```
-//! Where they are not last, L Y = (D B)ᵀ is solved along the tree of the factor, and so it is for the rows of a traction
-//! operator, which reach beyond the contact unknowns.
-//!
 //! A floating body has a generalised inverse G for K⁻¹, and balanced rows: those of B P (`floating::Balance`).
-//!
-//! Row i of B touches few unknowns, so column i of Y is zero above the first of them. Columns are therefore sorted by
-//! their first non-zero and both the triangular solve and the product skip the leading zeros.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::reborrow::ReborrowMut;
-use faer::{Accum, Mat, MatMut, Par};
-use rayon::prelude::*;
+use faer::Mat;
 
 use crate::algebra::delassus::check_rows;
-use crate::algebra::factor::{Columns, Factor};
+use crate::algebra::factor::Factor;
 use crate::algebra::matrix::JumpOperator;
-use crate::algebra::strips::{
-    STRIP, WORTH_THREADS, column_strips, for_all, permute_rows, row_strips,
-};
+use crate::algebra::multifrontal::{Columns, Shared};
+use crate::algebra::strips::{STRIP, column_strips, for_all, permute_rows};
 use crate::error::MethodError;
 
 /// W and its diagonal.
@@ -37,30 +24,27 @@ pub(crate) fn condense(
     rows: &[usize],
 ) -> Result<Condensed, MethodError> {
     check_rows(rows.len())?;
-    let half = Half::new(factor, jump, rows);
-    let (mut w, squares) = if factor.contact_last() {
-        half.square()
-    } else {
-        factor.condense(&half.entries, true)
-    };
+    let sorted = sorted(factor, jump, rows);
+    let (mut w, squares) = factor.condense(&columns(factor, &[(jump, &of(rows, &sorted))]), true);
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
     mirror_upper(&mut w);
     let mut position = vec![0; rows.len()];
-    for (s, &i) in half.sorted.iter().enumerate() {
+    for (s, &i) in sorted.iter().enumerate() {
         position[i] = s;
     }
     permute(&mut w, &position);
-    Ok((w, half.unsorted(&squares)))
+    Ok((w, position.iter().map(|&s| squares[s]).collect()))
 }
 
-/// The diagonal of W for the listed rows of B, strips of Y in memory only.
+/// The diagonal of W for the listed rows of B: W is not formed.
 pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<f64> {
-    let half = Half::new(factor, jump, rows);
-    if !factor.contact_last() {
-        return half.unsorted(&factor.condense(&half.entries, false).1);
-    }
-    let strips = half.strips().map(|begin| half.solve(begin).1);
-    half.unsorted(&strips.collect::<Vec<_>>().concat())
+    let sorted = sorted(factor, jump, rows);
+    let squares = factor
+        .condense(&columns(factor, &[(jump, &of(rows, &sorted))]), false)
+        .1;
+    let mut own = vec![0.0; rows.len()];
+    (sorted.iter().zip(squares)).for_each(|(&k, value)| own[k] = value);
+    own
 }
 
 /// The traction operator S condensed to some rows: T and X.
@@ -81,8 +65,7 @@ impl Tractions {
     ) -> Result<Self, MethodError> {
         check_rows(rows.len())?;
         let m = rows.len();
-        let both = [b, s].map(|operator| columns(factor, operator, rows, 0));
-        let (square, _) = factor.condense(&both.concat(), true);
+        let (square, _) = factor.condense(&columns(factor, &[(b, rows), (s, rows)]), true);
         let x = square.as_ref().submatrix(0, m, m, m).to_owned();
         let mut t = square.as_ref().submatrix(m, m, m, m).to_owned();
         mirror_upper(&mut t);
@@ -133,171 +116,47 @@ fn permute(a: &mut Mat<f64>, position: &[usize]) {
     }
 }
 
-/// (D B)ᵀ for the listed rows of B: positions in L, counted from `begin`, and values.
-fn columns(
-    factor: &Factor,
-    jump: &JumpOperator,
-    rows: &[usize],
-    begin: usize,
-) -> Vec<Vec<(usize, f64)>> {
+/// (D B)ᵀ for the listed rows of operators B; of a floating body with the part of its balance that each takes.
+fn columns(factor: &Factor, b: &[(&JumpOperator, &[usize])]) -> Columns {
     let mut pinned = vec![false; factor.scale.len()];
     factor.pins.iter().for_each(|&pin| pinned[pin] = true);
     // Pinned unknowns take no part of balanced forces.
-    let column = |&i: &usize| -> Vec<(usize, f64)> {
-        let row: Vec<(usize, f64)> = jump.row(i).filter(|e| e.1 != 0.0).collect();
-        let own = row.iter().map(|&(j, b)| (j, b * factor.scale[j]));
-        own.chain(factor.balance.completion(&row))
-            .filter(|&(j, _)| !pinned[j])
-            .map(|(j, value)| (factor.ordering.inverse[j] - begin, value))
+    let placed = |j: usize, value: f64| (!pinned[j]).then(|| (factor.ordering.inverse[j], value));
+    let rows = || {
+        b.iter()
+            .flat_map(|(b, rows)| rows.iter().map(move |&i| b.row(i)))
+    };
+    let own = |row| {
+        let row = Iterator::filter(row, |e: &(usize, f64)| e.1 != 0.0);
+        row.filter_map(|(j, b)| placed(j, b * factor.scale[j]))
             .collect()
     };
-    rows.iter().map(column).collect()
-}
-
-/// Columns of Y from their first row that is not zero on.
-struct Strip {
-    top: usize,
-    y: Mat<f64>,
-}
-
-/// Y with columns sorted by first non-zero, solved for strip by strip.
-struct Half<'a> {
-    factor: &'a Factor,
-    /// Entries of (D B)ᵀ by sorted column: position in L, counted from the contact unknowns where these come last; value.
-    entries: Vec<Vec<(usize, f64)>>,
-    /// Rows of Y.
-    height: usize,
-    /// First non-zero of each sorted column.
-    first: Vec<usize>,
-    /// Original column of each sorted one.
-    sorted: Vec<usize>,
-}
-
-impl<'a> Half<'a> {
-    fn new(factor: &'a Factor, jump: &JumpOperator, rows: &[usize]) -> Self {
-        let begin = if factor.contact_last() {
-            factor.ordering.contact_begin
-        } else {
-            0
-        };
-        let height = factor.scale.len() - begin;
-        let unsorted = columns(factor, jump, rows, begin);
-        let first_of = |k: usize| unsorted[k].iter().map(|e| e.0).min().unwrap_or(height);
-        let mut sorted: Vec<usize> = (0..rows.len()).collect();
-        sorted.sort_by_key(|&k| (first_of(k), k));
-        Self {
-            factor,
-            height,
-            first: sorted.iter().map(|&k| first_of(k)).collect(),
-            entries: sorted.iter().map(|&k| unsorted[k].clone()).collect(),
-            sorted,
-        }
-    }
-
-    /// Yᵀ Y, of which the upper triangle counts, and |y_k|².
-    fn square(&self) -> Condensed {
-        let (m, solved) = (
-            self.sorted.len(),
-            self.strips().map(|begin| self.solve(begin)),
-        );
-        let (mut y, squares): (Vec<Strip>, Vec<Vec<f64>>) = solved.unzip();
-        let mut w = Mat::<f64>::zeros(m, m);
-        let mut rest = w.as_mut();
-        // The last columns of Y are done with first: they go while W grows.
-        while let Some(last) = y.pop() {
-            let begin = y.len() * STRIP;
-            let (others, own) = rest.split_at_col_mut(begin);
-            rest = others;
-            let end = m.min(begin + STRIP);
-            let threads = (last.y.nrows() * end) as f64 * (end - begin) as f64 > WORTH_THREADS;
-            let parts = row_strips(own.subrows_mut(0, end), STRIP);
-            for_all(parts, threads, |(row, part)| {
-                let other = y.get(row / STRIP).unwrap_or(&last);
-                let other = other.y.subrows(last.top - other.top, last.y.nrows());
-                matmul(
-                    part,
-                    Accum::Replace,
-                    other.transpose(),
-                    &last.y,
-                    1.0,
-                    Par::Seq,
-                );
-            });
-        }
-        (w, squares.concat())
-    }
-
-    /// First columns of strips of Y.
-    fn strips(&self) -> impl IndexedParallelIterator<Item = usize> + '_ {
-        (0..self.sorted.len()).into_par_iter().step_by(STRIP)
-    }
-
-    /// The sorted columns of Y from `begin` on, and their |y_k|².
-    fn solve(&self, begin: usize) -> (Strip, Vec<f64>) {
-        let end = self.sorted.len().min(begin + STRIP);
-        let first = &self.first[begin..end];
-        let blocks = self.factor.of_contact().map(|block| block.begin);
-        let top = blocks.take_while(|&row| row <= first[0]).last();
-        let top = top.unwrap_or(0);
-        let mut y = Mat::<f64>::zeros(self.height - top, end - begin);
-        for (k, entries) in self.entries[begin..end].iter().enumerate() {
-            (entries.iter()).for_each(|&(row, value)| y[(row - top, k)] += value);
-        }
-        forward_solve(self.factor, y.as_mut(), top, first);
-        let square = |(k, &first): (usize, &usize)| -> f64 {
-            y.col_as_slice(k)[first - top..].iter().map(|y| y * y).sum()
-        };
-        let squares = first.iter().enumerate().map(square).collect();
-        (Strip { top, y }, squares)
-    }
-
-    /// In the order of the rows.
-    fn unsorted(&self, values: &[f64]) -> Vec<f64> {
-        let mut own = vec![0.0; values.len()];
-        (self.sorted.iter().zip(values)).for_each(|(&k, &value)| own[k] = value);
-        own
+    let shared = factor.balance.motions.iter().map(|motion| Shared {
+        entries: motion.s.iter().filter_map(|&(j, s)| placed(j, s)).collect(),
+        parts: (0..)
+            .zip(rows().map(|row| -row.map(|(j, b)| motion.r[j] * b).sum::<f64>()))
+            .filter(|part| part.1 != 0.0)
+            .collect(),
+    });
+    Columns {
+        own: rows().map(own).collect(),
+        shared: shared.collect(),
     }
 }
 
-/// y <- L_cc⁻¹ y, a strip of L after the other, y from row `from` on; column j is zero above `first[j]` (increasing in j).
-fn forward_solve(factor: &Factor, mut y: MatMut<'_, f64>, from: usize, first: &[usize]) {
-    for Columns {
-        begin,
-        block,
-        below: pattern,
-    } in factor.of_contact()
-    {
-        let own = block.ncols();
-        let columns = first.partition_point(|&f| f < begin + own);
-        if columns == 0 {
-            continue;
-        }
-        let begin = begin - from;
-        let (top, rest) = (y.rb_mut().subcols_mut(0, columns)).split_at_row_mut(begin + own);
-        let mut top = top.subrows_mut(begin, own);
-        let (triangle, low) = block.split_at_row(own);
-        solve_lower_triangular_in_place(triangle, top.rb_mut(), Par::Seq);
-        let (near, low) = low.split_at_row(low.nrows() - pattern.len());
-        let (below, mut far) = rest.split_at_row_mut(near.nrows());
-        matmul(below, Accum::Add, near, top.as_ref(), -1.0, Par::Seq);
-        if !pattern.is_empty() {
-            let mut update = Mat::<f64>::zeros(pattern.len(), columns);
-            matmul(
-                update.as_mut(),
-                Accum::Replace,
-                low,
-                top.as_ref(),
-                1.0,
-                Par::Seq,
-            );
-            let before = factor.ordering.contact_begin + from + begin + own + near.nrows();
-            for j in 0..columns {
-                for (k, &i) in pattern.iter().enumerate() {
-                    far[(i as usize - before, j)] -= update[(k, j)];
-                }
-            }
-        }
-    }
+/// Places in `rows`, those first that begin early in L: what a supernode sees stands together then.
+fn sorted(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<usize> {
+    let first = |k: usize| {
+        let own = jump.row(rows[k]).filter(|e| e.1 != 0.0);
+        own.map(|e| factor.ordering.inverse[e.0]).min()
+    };
+    let mut sorted: Vec<usize> = (0..rows.len()).collect();
+    sorted.sort_by_cached_key(|&k| (first(k), k));
+    sorted
+}
+
+fn of(rows: &[usize], places: &[usize]) -> Vec<usize> {
+    places.iter().map(|&k| rows[k]).collect()
 }
 
 #[cfg(test)]
@@ -308,7 +167,7 @@ mod tests {
     use crate::contract::elastic::{Elastic, ElasticParts};
 
     /// Two separate strips of `long` × 3 nodes with springs to all neighbours; contact couples unknowns of each strip
-    /// with itself only, so the trailing block has several supernodes.
+    /// with itself only: W is sparse.
     fn strips(long: usize, order: impl Fn(usize) -> usize) -> ElasticParts {
         let n = 2 * long * 3;
         let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -341,7 +200,6 @@ mod tests {
             .unwrap(),
             weight: vec![1.0; rows / 2],
             order: (0..n).map(order).collect(),
-            free_order: Vec::new(),
             floating: Vec::new(),
             frictionless: vec![],
             traction: None,
@@ -389,7 +247,6 @@ mod tests {
             jump: JumpOperator::new(n, n, unit(n), (0..n).collect(), vec![1.0; n]).unwrap(),
             weight: vec![1.0; n / 2],
             order: (0..n).collect(),
-            free_order: Vec::new(),
             floating: Vec::new(),
             frictionless: vec![],
             traction: None,

@@ -6,12 +6,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 
 use crate::algebra::dense::{larger, norm, ratio};
 use crate::algebra::floating::Balance;
 use crate::algebra::matrix::SquareMatrix;
-use crate::algebra::multifrontal::{Analysis, Cholesky, Ordering};
+use crate::algebra::multifrontal::{Analysis, Cholesky, Columns, Ordering};
 use crate::algebra::strips::Failure;
 use crate::error::MethodError;
 
@@ -58,70 +58,6 @@ pub(crate) fn backward_error(
     let forces: f64 = forces.iter().map(|f| norm(f)).sum();
     let all = ratio(norm(residual), norm(size) + forces);
     larger(all, ROW * rows.fold(0.0, larger))
-}
-
-/// In which order the unknowns may be eliminated, and what is condensed to.
-#[derive(Default)]
-pub(crate) struct Elimination {
-    /// Preferred order of those not in contact, then of those in contact.
-    pub contact_last: Vec<usize>,
-    /// Preferred order of all alike; empty if contact unknowns are to come last.
-    pub free: Vec<usize>,
-    /// The unknowns that move a contact point.
-    pub in_contact: Vec<bool>,
-    /// Unknowns of every contact row.
-    pub rows: Vec<Vec<usize>>,
-}
-
-impl Elimination {
-    /// Of the order that takes least work until W is known.
-    ///
-    /// With the contact unknowns last W follows from their part of L alone, which is dense: where cracks run all over a body
-    /// that is most of the work. Then W is condensed along the tree of the free order instead. Rows that balance a floating body
-    /// touch all contact unknowns, which come last there.
-    pub fn planned(&self, k: &SquareMatrix, balance: &Balance) -> Planned {
-        /// Multiplications and additions in the contact unknowns below which another order gains little.
-        const WORTH: f64 = 5e8;
-        /// Least gain by the free order.
-        const GAIN: f64 = 0.8;
-        let clock = Instant::now();
-        let planned = |analysis: Analysis, condensation: f64| Planned {
-            analysis,
-            condensation,
-            analysis_s: clock.elapsed().as_secs_f64(),
-        };
-        let last = || Analysis::new(k, &self.contact_last, &self.in_contact);
-        let c = self.in_contact.iter().filter(|own| **own).count() as f64;
-        let m = self.rows.len() as f64;
-        // Columns of Y begin where their row does: of a dense triangle and a dense square about a third is left.
-        let condensation = c * m * (c + m) / 3.0;
-        // With the contact unknowns last at least that of their own part.
-        let dense = c.powi(3) / 3.0 + condensation;
-        if self.free.is_empty() || balance.holds_something() || dense < WORTH {
-            return planned(last(), condensation);
-        }
-        let free = Analysis::new(k, &self.free, &vec![false; k.size()]);
-        let place = |row: &Vec<usize>| row.iter().map(|&j| free.ordering.inverse[j]).collect();
-        let along_tree = free.tree.condensation(self.rows.iter().map(place));
-        let least = (free.tree.work() + along_tree) / GAIN;
-        if least < dense {
-            return planned(free, along_tree);
-        }
-        let last = last();
-        if least < last.tree.work() + condensation {
-            planned(free, along_tree)
-        } else {
-            planned(last, condensation)
-        }
-    }
-}
-
-/// How K will be factored.
-pub(crate) struct Planned {
-    pub analysis: Analysis,
-    /// Multiplications and additions from there to W.
-    pub condensation: f64,
-    pub analysis_s: f64,
 }
 
 /// The factor with everything needed to solve.
@@ -236,40 +172,10 @@ impl Factor {
         self.pins.iter().for_each(|&pin| to[pin] = 0.0);
     }
 
-    /// Whether contact unknowns come last.
-    pub fn contact_last(&self) -> bool {
-        self.ordering.contact_begin < self.scale.len()
-    }
-
-    /// Yᵀ Y with L Y = B for columns of B given by positions in L, if it is to be formed, of which the upper triangle counts,
-    /// and its diagonal.
-    pub fn condense(&self, b: &[Vec<(usize, f64)>], formed: bool) -> (Mat<f64>, Vec<f64>) {
+    /// Yᵀ Y with L Y = B, if it is to be formed, of which the upper triangle counts, and its diagonal.
+    pub fn condense(&self, b: &Columns, formed: bool) -> (Mat<f64>, Vec<f64>) {
         self.cholesky.condense(b, formed)
     }
-
-    /// The part of L on the contact unknowns, strip by strip.
-    pub fn of_contact(&self) -> impl Iterator<Item = Columns<'_>> {
-        let tree = &self.cholesky.tree;
-        (tree.contact..tree.nodes.len()).flat_map(move |s| {
-            let begin = tree.nodes[s].columns.start - self.ordering.contact_begin;
-            let strips = self.cholesky.strips(s);
-            strips.map(move |(first, block)| Columns {
-                begin: begin + first,
-                block,
-                below: tree.pattern(s),
-            })
-        })
-    }
-}
-
-/// Columns of L on contact unknowns, which are counted from the first of them.
-pub(crate) struct Columns<'a> {
-    /// First column.
-    pub begin: usize,
-    /// Their own rows, of which the lower triangle counts, those of the later columns of the supernode, and the rows below.
-    pub block: MatRef<'a, f64>,
-    /// Unknowns of the last of these, counted from the first of all.
-    pub below: &'a [u32],
 }
 
 /// Values of D K D below its diagonal of ones, in the order of L, column `c` from `begin[c]` on; 0 where a pinned unknown
@@ -299,81 +205,4 @@ fn scaled_values(
 /// An error of a kernel.
 pub(crate) fn kernel(what: &'static str, reason: String) -> MethodError {
     MethodError::Kernel { what, reason }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A grid of n × n points with springs to their neighbours.
-    fn grid(n: usize) -> SquareMatrix {
-        let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
-        for j in 0..n * n {
-            let right = (j % n + 1 < n).then_some(j + 1);
-            let above = (j + n < n * n).then_some(j + n);
-            row_idx.push(j);
-            values.push(4.1);
-            for i in right.into_iter().chain(above) {
-                row_idx.push(i);
-                values.push(-1.0);
-            }
-            col_ptr.push(row_idx.len());
-        }
-        SquareMatrix::symmetric(n * n, col_ptr, row_idx, values).unwrap()
-    }
-
-    /// By halves, the line between them last.
-    fn dissected([x, y]: [std::ops::Range<usize>; 2], n: usize, order: &mut Vec<usize>) {
-        let wide = x.len() >= y.len();
-        let long = if wide { x.clone() } else { y.clone() };
-        if long.len() < 3 {
-            order.extend(y.flat_map(|j| x.clone().map(move |i| i + n * j)));
-            return;
-        }
-        let middle = (long.start + long.end) / 2;
-        for part in [long.start..middle, middle + 1..long.end, middle..middle + 1] {
-            let own = if wide {
-                [part, y.clone()]
-            } else {
-                [x.clone(), part]
-            };
-            if own.iter().any(|r| r.len() == 1) {
-                order.extend(
-                    own[1]
-                        .clone()
-                        .flat_map(|j| own[0].clone().map(move |i| i + n * j)),
-                )
-            } else {
-                dissected(own, n, order)
-            }
-        }
-    }
-
-    /// Goal: contact unknowns come last where they lie on a line, and anywhere where they are all over a body; never where it
-    /// floats.
-    #[test]
-    fn the_order_that_takes_less_work_is_taken() {
-        let n = 220;
-        let k = grid(n);
-        let mut order = Vec::new();
-        dissected([0..n, 0..n], n, &mut order);
-        let free = |touched: &dyn Fn(usize) -> bool, balance: &Balance| {
-            let in_contact: Vec<bool> = (0..n * n).map(touched).collect();
-            let rows = (0..n * n).filter(|&j| in_contact[j]).map(|j| vec![j]);
-            let elimination = Elimination {
-                contact_last: order.clone(),
-                free: order.clone(),
-                rows: rows.step_by(4).collect(),
-                in_contact,
-            };
-            let analysis = elimination.planned(&k, balance).analysis;
-            analysis.ordering.contact_begin == n * n
-        };
-        let held = Balance::new(&k, &[], &[]);
-        assert!(!free(&|j| j / n == 100, &held));
-        let everywhere = |j: usize| (j % n).is_multiple_of(5) && j / n % 3 == 1;
-        assert!(free(&everywhere, &held));
-        let floating = Balance::new(&k, &[vec![1.0; n * n]], &vec![true; n * n]);
-        assert!(!free(&everywhere, &floating));
-    }
 }

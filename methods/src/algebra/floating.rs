@@ -80,13 +80,13 @@ pub(crate) fn pins(k: &SquareMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, M
     Ok(pins)
 }
 
-/// A rigid motion of the balanced solution.
+/// A rigid motion of the balanced solution: D⁻¹ Pᵀ b = D⁻¹ b − Σ (r·b) s.
 #[derive(Debug, Clone)]
-struct Motion {
+pub(crate) struct Motion {
     /// r by unknown.
-    r: Vec<f64>,
+    pub r: Vec<f64>,
     /// s by contact unknown, where it is not zero.
-    s: Vec<(usize, f64)>,
+    pub s: Vec<(usize, f64)>,
 }
 
 /// P of the generalised inverse.
@@ -94,7 +94,7 @@ struct Motion {
 pub(crate) struct Balance {
     /// D by unknown.
     root: Vec<f64>,
-    motions: Vec<Motion>,
+    pub motions: Vec<Motion>,
 }
 
 impl Balance {
@@ -136,11 +136,6 @@ impl Balance {
             .collect()
     }
 
-    /// Whether there is a motion to take out.
-    pub fn holds_something(&self) -> bool {
-        !self.motions.is_empty()
-    }
-
     /// f := Pᵀ f.
     pub fn balance(&self, f: &mut [f64]) {
         for Motion { r, s } in &self.motions {
@@ -157,15 +152,6 @@ impl Balance {
                 x.iter_mut().zip(r).for_each(|(x, r)| *x -= amount * r);
             }
         }
-    }
-
-    /// Term of Pᵀ beside D⁻¹ b, by contact unknown.
-    pub fn completion(&self, b: &[(usize, f64)]) -> impl Iterator<Item = (usize, f64)> {
-        self.motions.iter().flat_map(|Motion { r, s }| {
-            let resultant: f64 = b.iter().map(|&(j, b)| r[j] * b).sum();
-            let own = if resultant == 0.0 { &[][..] } else { s };
-            own.iter().map(move |&(j, s)| (j, -resultant * s))
-        })
     }
 }
 

@@ -18,6 +18,7 @@ use faer::MatRef;
 use crate::algebra::strips::{Failure, WORTH_THREADS};
 
 pub(crate) use analysis::{Analysis, Entries, Ordering};
+pub(crate) use condense::{Columns, Shared};
 use front::{Front, Update};
 use tree::{AssemblyTree, NONE};
 

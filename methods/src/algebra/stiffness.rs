@@ -1,13 +1,15 @@
 //! The body behind the contact points: how displacements follow from forces.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
+use std::time::Instant;
 
 use crate::algebra::condensation::{self, Tractions};
 use crate::algebra::delassus::{Delassus, check_rows, dense};
 use crate::algebra::dense::{norm, ratio};
-use crate::algebra::factor::{Elimination, Factor, Planned, backward_error};
+use crate::algebra::factor::{Factor, backward_error};
 use crate::algebra::floating::{Balance, ModeJumps, pins};
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
+use crate::algebra::multifrontal::Analysis;
 use crate::algebra::sparse::{Sparse, computed, held};
 use crate::algebra::strips::cholesky;
 use crate::error::MethodError;
@@ -25,8 +27,8 @@ pub(crate) trait Stiffness: Send + Sync {
         Err(MethodError::NoStiffness)
     }
 
-    /// How K is factored, analysed on first use.
-    fn plan(&self) -> Option<&Planned> {
+    /// How K is factored, analysed on first use, and the seconds of that.
+    fn plan(&self) -> Option<&(Analysis, f64)> {
         None
     }
 
@@ -88,40 +90,42 @@ pub(crate) const INDEFINITE: f64 = 1e-9;
 /// A sparse K, factored once.
 pub(crate) struct SparseStiffness {
     k: SquareMatrix,
-    /// Until K is analysed.
-    elimination: Mutex<Elimination>,
-    planned: OnceLock<Planned>,
+    /// Preferred order of elimination.
+    order: Vec<usize>,
+    plan: OnceLock<(Analysis, f64)>,
     pins: Vec<usize>,
     balance: Arc<Balance>,
     factor: OnceLock<Result<Factor, MethodError>>,
 }
 
 impl SparseStiffness {
-    /// `floating` spans the kernel of K.
+    /// `floating` spans the kernel of K; `in_contact`: the unknowns that move a contact point.
     ///
     /// # Errors
     /// Motions that are not rigid or depend on each other.
     pub fn new(
         k: SquareMatrix,
-        elimination: Elimination,
+        order: Vec<usize>,
+        in_contact: &[bool],
         floating: &[Vec<f64>],
     ) -> Result<Self, MethodError> {
         let pins = pins(&k, floating)?;
-        let balance = Arc::new(Balance::new(&k, floating, &elimination.in_contact));
+        let balance = Arc::new(Balance::new(&k, floating, in_contact));
         Ok(Self {
             k,
             balance,
-            elimination: Mutex::new(elimination),
-            planned: OnceLock::new(),
+            order,
+            plan: OnceLock::new(),
             pins,
             factor: OnceLock::new(),
         })
     }
 
-    fn planned(&self) -> &Planned {
-        self.planned.get_or_init(|| {
-            let mut elimination = (self.elimination.lock()).unwrap_or_else(PoisonError::into_inner);
-            std::mem::take(&mut *elimination).planned(&self.k, &self.balance)
+    fn planned(&self) -> &(Analysis, f64) {
+        self.plan.get_or_init(|| {
+            let clock = Instant::now();
+            let analysis = Analysis::new(&self.k, &self.order);
+            (analysis, clock.elapsed().as_secs_f64())
         })
     }
 }
@@ -138,7 +142,7 @@ impl Stiffness for SparseStiffness {
     fn factor(&self) -> Result<&Factor, MethodError> {
         let build = || {
             let (pins, balance) = (self.pins.clone(), self.balance.clone());
-            Factor::new(&self.k, &self.planned().analysis, pins, balance)
+            Factor::new(&self.k, &self.planned().0, pins, balance)
         };
         self.factor
             .get_or_init(build)
@@ -146,7 +150,7 @@ impl Stiffness for SparseStiffness {
             .map_err(Clone::clone)
     }
 
-    fn plan(&self) -> Option<&Planned> {
+    fn plan(&self) -> Option<&(Analysis, f64)> {
         Some(self.planned())
     }
 
@@ -158,7 +162,7 @@ impl Stiffness for SparseStiffness {
         match self.factor.get() {
             None => (0, 0.0, 0.0),
             Some(Err(_)) => (1, 0.0, 0.0),
-            Some(Ok(factor)) => (1, self.planned().analysis_s, factor.factorisation_s),
+            Some(Ok(factor)) => (1, self.planned().1, factor.factorisation_s),
         }
     }
 

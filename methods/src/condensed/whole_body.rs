@@ -116,7 +116,7 @@ impl WholeBody {
         }
         let order = &factor.ordering.forward;
         Ok(Self {
-            analysis: Analysis::new(&sprung, order, &vec![false; K.size()]),
+            analysis: Analysis::new(&sprung, order),
             pins: (factor.pins.iter())
                 .map(|&j| (j, sprung.col_ptr()[j], K.diagonal(j)))
                 .collect(),

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use crate::algebra::condensation::Tractions;
 use crate::algebra::delassus::Delassus;
-use crate::algebra::factor::{Elimination, Factor};
+use crate::algebra::factor::Factor;
 use crate::algebra::floating::ModeJumps;
 use crate::algebra::loads::Loads;
 use crate::algebra::matrix::{JumpOperator, SquareMatrix};
+use crate::algebra::multifrontal::Analysis;
 use crate::algebra::rows::RowSet;
 use crate::algebra::spectrum::rank;
 use crate::algebra::stiffness::{DelassusOnly, SparseStiffness, Stiffness};
@@ -28,11 +29,8 @@ pub struct ElasticParts {
     pub jump: JumpOperator,
     /// Tributary area (2D: length) per contact point, > 0, in m² (m).
     pub weight: Vec<f64>,
-    /// Preferred fill-reducing elimination order of the n unknowns, a permutation, for when those in contact come last
-    /// whatever it says: see [`in_contact`].
+    /// Preferred fill-reducing elimination order of the n unknowns, a permutation.
     pub order: Vec<usize>,
-    /// The same for when all are alike; empty if those in contact are to come last. The order that takes least work is taken.
-    pub free_order: Vec<usize>,
     /// Basis of the kernel of K: the rigid motions left by the supports, n entries each; empty if K is definite.
     pub floating: Vec<Vec<f64>>,
     /// Promise by point that no run will ever have friction there: of these only normal rows are condensed. Empty: no promise.
@@ -90,10 +88,6 @@ impl Elastic {
         let diagonal = (0..n).map(|j| parts.stiffness.diagonal(j));
         check_positive("stiffness diagonal", diagonal)?;
         check_permutation(&parts.order)?;
-        if !parts.free_order.is_empty() {
-            check_len("elimination order", parts.free_order.len(), n)?;
-            check_permutation(&parts.free_order)?;
-        }
         check_contact(parts.dim, n, &parts.jump, &parts.weight, &parts.floating)?;
         if let Some(traction) = &parts.traction {
             check_len("traction operator rows", traction.rows(), parts.jump.rows())?;
@@ -106,18 +100,9 @@ impl Elastic {
                 parts.weight.len(),
             )?;
         }
-        let rows = condensed_rows(parts.dim, parts.weight.len(), &parts.frictionless);
-        let touched = |&i: &usize| {
-            let own = parts.jump.row(i).filter(|e| e.1 != 0.0);
-            own.map(|e| e.0).collect()
-        };
-        let elimination = Elimination {
-            contact_last: parts.order,
-            free: parts.free_order,
-            in_contact: in_contact(&parts.jump, parts.dim, &parts.frictionless),
-            rows: rows.source.iter().map(touched).collect(),
-        };
-        let stiffness = SparseStiffness::new(parts.stiffness, elimination, &parts.floating)?;
+        let moved = in_contact(&parts.jump, parts.dim, &parts.frictionless);
+        let stiffness =
+            SparseStiffness::new(parts.stiffness, parts.order, &moved, &parts.floating)?;
         check_motions(&parts.jump, &parts.floating)?;
         Ok(Arc::new(Self {
             frictionless: parts.frictionless,
@@ -257,13 +242,18 @@ impl Elastic {
 
     /// What it takes until W is formed; `None` where only W is known.
     pub fn cost(&self) -> Option<ElasticCost> {
-        let planned = self.stiffness.plan()?;
+        let (Analysis { ordering, tree, .. }, analysis_s) = self.stiffness.plan()?;
+        let rows = self.rows().source;
+        let touched = |&i: &usize| {
+            let own = self.jump.row(i).filter(|e| e.1 != 0.0);
+            own.map(|e| ordering.inverse[e.0]).collect()
+        };
         Some(ElasticCost {
-            factorisation: planned.analysis.tree.work(),
-            condensation: planned.condensation,
-            entries: planned.analysis.tree.entries(),
-            rows: self.rows().len(),
-            analysis_s: planned.analysis_s,
+            factorisation: tree.work(),
+            condensation: tree.condensation(rows.iter().map(touched), !self.floating.is_empty()),
+            entries: tree.entries(),
+            rows: rows.len(),
+            analysis_s: *analysis_s,
         })
     }
 
@@ -444,8 +434,8 @@ fn condensed_rows(dim: usize, points: usize, frictionless: &[bool]) -> RowSet {
     RowSet::new(dim, &(0..points).map(of).collect::<Vec<_>>())
 }
 
-/// The unknowns that move a contact point: they are eliminated last whatever the order.
-pub fn in_contact(jump: &JumpOperator, dim: usize, frictionless: &[bool]) -> Vec<bool> {
+/// The unknowns that move a contact point.
+fn in_contact(jump: &JumpOperator, dim: usize, frictionless: &[bool]) -> Vec<bool> {
     let mut moved = vec![false; jump.cols()];
     let rows = condensed_rows(dim, jump.rows() / dim, frictionless);
     let entries = rows.source.iter().flat_map(|&i| jump.row(i));

@@ -290,7 +290,6 @@ mod tests {
             jump: sparse(m, n, b),
             weight: weight.clone(),
             order: (0..n).collect(),
-            free_order: Vec::new(),
             floating: vec![],
             frictionless: vec![],
             traction: Some(sparse(m, n, s)),

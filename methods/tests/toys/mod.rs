@@ -47,7 +47,6 @@ pub fn parts(
         jump: JumpOperator::new(b.len(), n, row_ptr, col_idx, entries).unwrap(),
         weight: vec![1.0; b.len() / dim],
         order: (0..n).collect(),
-        free_order: Vec::new(),
         floating,
         frictionless: vec![frictionless; b.len() / dim],
         traction: None,

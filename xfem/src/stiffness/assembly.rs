@@ -89,20 +89,18 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// Nested dissection of the nodes, expanded to their unknowns with a number (`None`: prescribed). What is eliminated `last`
-/// whatever the order, by number, counts for nothing.
+/// Nested dissection of the nodes, expanded to their unknowns with a number (`None`: prescribed).
 pub fn elimination_order(
     mesh: &Mesh,
     enrichment: &Enrichment,
     numbers: &[Option<u32>],
-    last: &[bool],
 ) -> Vec<usize> {
     let dim = mesh.dim();
     let free = |node: usize| {
         let functions = std::iter::once(node).chain(enrichment.enriched_of(node));
         functions.flat_map(|f| (0..dim).filter_map(move |a| numbers[f * dim + a]))
     };
-    let counted = |node: usize| free(node).filter(|&n| !last[n as usize]).count() as u32;
+    let counted = |node: usize| free(node).count() as u32;
     let unknowns: Vec<u32> = (0..mesh.grid.len()).map(counted).collect();
     let nodes = nested_dissection(&mesh.grid, &unknowns);
     nodes

@@ -1,7 +1,6 @@
 //! Analysis of the pattern of K before its values are known: elimination order, supernodes, their rows.
 //!
-//! The contact unknowns C come last, the others in the preferred order. The elimination tree is put in postorder (same
-//! fill, Liu 1990), columns with the same rows below them are joined, then also those that nearly have: dense kernels on
+//! The elimination tree of the preferred order is put in postorder (same fill, Liu 1990), columns with the same rows below them are joined, then also those that nearly have: dense kernels on
 //! few zeros more are faster than sparse ones (Ashcraft and Grimes 1989).
 
 use std::ops::Range;
@@ -19,21 +18,15 @@ const RELAXATION: [(usize, f64); 4] = [(4, 0.8), (16, 0.3), (48, 0.1), (usize::M
 pub(crate) struct Ordering {
     pub forward: Vec<usize>,
     pub inverse: Vec<usize>,
-    /// Position of the first contact unknown.
-    pub contact_begin: usize,
 }
 
 impl Ordering {
-    fn new(forward: Vec<usize>, contact_begin: usize) -> Self {
+    fn new(forward: Vec<usize>) -> Self {
         let mut inverse = vec![0; forward.len()];
         for (position, &j) in forward.iter().enumerate() {
             inverse[j] = position;
         }
-        Self {
-            forward,
-            inverse,
-            contact_begin,
-        }
+        Self { forward, inverse }
     }
 }
 
@@ -51,17 +44,14 @@ pub(crate) struct Analysis {
 }
 
 impl Analysis {
-    /// Of K, eliminated in the order `preferred` (a permutation), contact unknowns last; `in_contact[j]` marks them.
-    pub fn new(k: &SquareMatrix, preferred: &[usize], in_contact: &[bool]) -> Self {
-        let rest = preferred.iter().copied().filter(|&j| !in_contact[j]);
-        let contact = preferred.iter().copied().filter(|&j| in_contact[j]);
-        let contact_begin = in_contact.iter().filter(|c| !**c).count();
-        let wished = Ordering::new(rest.chain(contact).collect(), contact_begin);
+    /// Of K, eliminated in the order `preferred`, a permutation.
+    pub fn new(k: &SquareMatrix, preferred: &[usize]) -> Self {
+        let wished = Ordering::new(preferred.to_vec());
         let columns = Columns::new(k, &wished);
-        let groups = Groups::of_equal_rows(&columns, contact_begin).joined();
+        let groups = Groups::of_equal_rows(&columns).joined();
         let (order, sizes) = groups.in_postorder();
         let original = order.iter().map(|&c| wished.forward[columns.order[c]]);
-        let ordering = Ordering::new(original.collect(), contact_begin);
+        let ordering = Ordering::new(original.collect());
         let (tree, entries) = assembly_tree(k, &ordering, &sizes);
         Self {
             ordering: Arc::new(ordering),
@@ -125,7 +115,7 @@ impl Columns {
         let n = k.size();
         let earlier = Lists::new(n, |visit| each_pair(k, wished, &mut |a, b| visit(b, a)));
         let tree = elimination_tree(&earlier);
-        let order = postorder_of_parts(&tree, wished.contact_begin);
+        let order = postorder(&tree);
         let mut position = vec![0; n];
         for (new, &old) in order.iter().enumerate() {
             position[old] = new;
@@ -232,14 +222,6 @@ fn root(ancestor: &mut [usize], start: usize) -> usize {
     end
 }
 
-/// Postorder of the forest below `at`, then of the one from there on.
-fn postorder_of_parts(parent: &[usize], at: usize) -> Vec<usize> {
-    let later: Vec<usize> = parent[at..].iter().map(|p| p.wrapping_sub(at)).collect();
-    let mut order = postorder(&parent[..at]);
-    order.extend(postorder(&later).into_iter().map(|k| k + at));
-    order
-}
-
 /// Columns that follow each other and will be eliminated together.
 struct Group {
     columns: Range<usize>,
@@ -253,22 +235,16 @@ struct Group {
     joined: usize,
 }
 
-struct Groups {
-    groups: Vec<Group>,
-    /// First group of contact unknowns.
-    contact: usize,
-}
+struct Groups(Vec<Group>);
 
 impl Groups {
     /// Columns whose rows are those of the next column and its diagonal.
-    fn of_equal_rows(columns: &Columns, contact_begin: usize) -> Self {
+    fn of_equal_rows(columns: &Columns) -> Self {
         let Columns { parent, count, .. } = columns;
         let n = count.len();
         let (mut groups, mut of_column) = (Vec::<Group>::new(), vec![0; n]);
-        let mut contact = 0;
         for c in 0..n {
-            let goes_on =
-                c > 0 && c != contact_begin && parent[c - 1] == c && count[c - 1] == count[c] + 1;
+            let goes_on = c > 0 && parent[c - 1] == c && count[c - 1] == count[c] + 1;
             match groups.last_mut() {
                 Some(group) if goes_on => {
                     group.columns.end = c + 1;
@@ -284,7 +260,6 @@ impl Groups {
                 }),
             }
             of_column[c] = groups.len() - 1;
-            contact += usize::from(c < contact_begin && !goes_on);
         }
         for group in &mut groups {
             let above = parent[group.columns.end - 1];
@@ -294,21 +269,21 @@ impl Groups {
                 of_column[above]
             };
         }
-        Self { groups, contact }
+        Self(groups)
     }
 
     /// Joins children to their parents while few entries are zero.
     fn joined(mut self) -> Self {
-        let mut children = vec![Vec::new(); self.groups.len()];
-        for p in 0..self.groups.len() {
+        let mut children = vec![Vec::new(); self.0.len()];
+        for p in 0..self.0.len() {
             let mut own: Vec<usize> = std::mem::take(&mut children[p]);
             // The lowest add the most zeros.
-            own.sort_by_key(|&c| std::cmp::Reverse((self.groups[c].height, c)));
+            own.sort_by_key(|&c| std::cmp::Reverse((self.0[c].height, c)));
             for c in own {
                 self.join(c, p);
             }
-            if self.groups[p].parent != NONE {
-                children[self.groups[p].parent].push(p);
+            if self.0[p].parent != NONE {
+                children[self.0[p].parent].push(p);
             }
         }
         self
@@ -316,10 +291,7 @@ impl Groups {
 
     /// Joins child `c` to its parent `p` if few entries are zero then.
     fn join(&mut self, c: usize, p: usize) {
-        if (c < self.contact) != (p < self.contact) {
-            return;
-        }
-        let (child, parent) = (&self.groups[c], &self.groups[p]);
+        let (child, parent) = (&self.0[c], &self.0[p]);
         let (width, height) = (child.width + parent.width, child.width + parent.height);
         let new = child.width * (height - child.height);
         let whole = Trapezoid {
@@ -332,20 +304,20 @@ impl Groups {
             .find(|r| width <= r.0)
             .map_or(0.0, |r| r.1);
         if new == 0 || zeros as f64 <= allowed * whole.entries() as f64 {
-            self.groups[c].joined = p;
-            let parent = &mut self.groups[p];
+            self.0[c].joined = p;
+            let parent = &mut self.0[p];
             (parent.width, parent.height, parent.zeros) = (width, height, zeros);
         }
     }
 
     /// The columns, group by group after their children, and the sizes of the groups.
     fn in_postorder(&self) -> (Vec<usize>, Vec<usize>) {
-        let count = self.groups.len();
+        let count = self.0.len();
         // The group that each was joined to in the end: parents stand behind their children.
         let mut last: Vec<usize> = (0..count).collect();
         for g in (0..count).rev() {
-            if self.groups[g].joined != NONE {
-                last[g] = last[self.groups[g].joined];
+            if self.0[g].joined != NONE {
+                last[g] = last[self.0[g].joined];
             }
         }
         let mut members = vec![Vec::new(); count];
@@ -354,17 +326,17 @@ impl Groups {
         }
         // Groups that were joined are leaves without columns.
         let parent: Vec<usize> = (0..count)
-            .map(|g| match self.groups[g].parent {
+            .map(|g| match self.0[g].parent {
                 NONE => NONE,
                 above => last[above],
             })
             .collect();
         let (mut order, mut sizes) = (Vec::new(), Vec::new());
-        for g in postorder_of_parts(&parent, self.contact) {
+        for g in postorder(&parent) {
             let before = order.len();
             members[g]
                 .iter()
-                .for_each(|&m| order.extend(self.groups[m].columns.clone()));
+                .for_each(|&m| order.extend(self.0[m].columns.clone()));
             if order.len() > before {
                 sizes.push(order.len() - before);
             }
@@ -422,7 +394,6 @@ fn assembly_tree(
         for row in &mut below.items[own] {
             *row = position[*row as usize];
         }
-        tree.contact += usize::from(end <= ordering.contact_begin);
         tree.push(columns, &rows, children, &position);
     }
     let entries = Entries {

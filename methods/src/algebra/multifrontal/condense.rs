@@ -4,12 +4,15 @@
 //! [ L₁₁   ] [ Y₁ ]   [ F₁ ]     F₁, F₂: B and the updates of the children,  W += Y₁ᵀ Y₁,  update F₂ − L₂₁ Y₁
 //! [ L₂₁ I ] [ U  ] = [ F₂ ]
 //! ```
+//! Columns of a floating body are sparse ones and multiples of a few that touch all of its contact: Y is added up before it is squared,
+//! so that nothing cancels in W.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 
+use crate::algebra::dense::add;
 use crate::algebra::multifrontal::Cholesky;
 use crate::algebra::multifrontal::tree::{AssemblyTree, Supernode};
 use crate::algebra::strips::{STRIP, WORTH_THREADS, column_strips, for_all};
@@ -42,29 +45,46 @@ impl AssemblyTree {
         seen
     }
 
-    /// Multiplications and additions of W for a B whose columns have entries at these positions.
-    pub fn condensation(&self, b: impl Iterator<Item = Vec<usize>>) -> f64 {
-        let of = self.supernodes();
-        let begins = (0u32..).zip(b);
-        let begins = begins.flat_map(|(column, at)| at.into_iter().map(move |p| (column, p)));
+    /// Multiplications and additions of W for a B whose columns have entries at these positions; `alike`: at those of all, as where a
+    /// body floats.
+    pub fn condensation(&self, b: impl Iterator<Item = Vec<usize>>, alike: bool) -> f64 {
+        let (of, mut width) = (self.supernodes(), 1);
+        let begins = (0u32..).zip(b).flat_map(|(column, at)| {
+            width = if alike { column + 1 } else { 1 };
+            let column = if alike { 0 } else { column };
+            at.into_iter().map(move |p| (column, p))
+        });
         let seen = self.seen(begins.map(|(column, p)| (column, of[p])));
         let work = |(node, columns): (&Supernode, &Vec<u32>)| {
-            let [k, h, a] = [node.columns.len(), node.height(), columns.len()].map(|n| n as f64);
+            let columns = columns.len() * width as usize;
+            let [k, h, a] = [node.columns.len(), node.height(), columns].map(|n| n as f64);
             a * k * (k + 2.0 * (h - k) + a)
         };
         self.nodes.iter().zip(&seen).map(work).sum()
     }
 }
 
+/// A sparse B by columns: each its own entries, by position in L and value, and parts of what several share.
+pub(crate) struct Columns {
+    pub own: Vec<Vec<(usize, f64)>>,
+    pub shared: Vec<Shared>,
+}
+
+/// Entries, and how much of them the columns have that do, increasing.
+pub(crate) struct Shared {
+    pub entries: Vec<(usize, f64)>,
+    pub parts: Vec<(u32, f64)>,
+}
+
 /// Y and what is left of F, for the columns of B that a supernode sees.
-struct Columns {
+struct Half {
     /// Rows of its own columns.
     own: Mat<f64>,
     /// Rows below.
     below: Mat<f64>,
 }
 
-impl Columns {
+impl Half {
     fn zeros(node: &Supernode, width: usize) -> Self {
         let (k, height) = (node.columns.len(), node.height());
         Self {
@@ -88,14 +108,42 @@ impl Columns {
     }
 }
 
+impl Columns {
+    /// Columns with a part in Y of those that a supernode sees, of which the shared ones stand last; `None` where it sees none of these.
+    fn added_up(&self, seen: &[u32], y: &Mat<f64>) -> Option<(Vec<u32>, Mat<f64>)> {
+        let m = self.own.len() as u32;
+        let (own, shared) = seen.split_at(seen.partition_point(|&c| c < m));
+        let parts = |&c: &u32| &self.shared[(c - m) as usize].parts;
+        if shared.is_empty() {
+            return None;
+        }
+        let others = shared.iter().flat_map(parts).map(|part| part.0);
+        let mut whole: Vec<u32> = own.iter().copied().chain(others).collect();
+        whole.sort_unstable();
+        whole.dedup();
+        let mut sum = Mat::zeros(y.nrows(), whole.len());
+        let mut put = |column: u32, part: f64, y: &[f64]| {
+            let at = whole.partition_point(|&c| c < column);
+            add(part, y, sum.col_as_slice_mut(at));
+        };
+        let mut columns = (0..y.ncols()).map(|j| y.col_as_slice(j));
+        (own.iter().zip(&mut columns)).for_each(|(&column, y)| put(column, 1.0, y));
+        for (c, y) in shared.iter().zip(columns) {
+            (parts(c).iter()).for_each(|&(column, part)| put(column, part, y));
+        }
+        Some((whole, sum))
+    }
+}
+
 impl Cholesky {
-    /// W for the B with these columns, given by positions in L and values, if it is to be formed, of which the upper triangle
-    /// counts; and its diagonal. The same bits for any number of threads, and for the diagonal whether W is formed or not.
-    pub fn condense(&self, b: &[Vec<(usize, f64)>], formed: bool) -> (Mat<f64>, Vec<f64>) {
-        let (tree, m) = (&self.tree, b.len());
+    /// W, if it is to be formed, of which the upper triangle counts, and its diagonal. The same bits for any number of threads, and
+    /// for the diagonal whether W is formed or not.
+    pub fn condense(&self, b: &Columns, formed: bool) -> (Mat<f64>, Vec<f64>) {
+        let (tree, m) = (&self.tree, b.own.len());
         let of = tree.supernodes();
         let mut entries: Vec<Vec<Entry>> = vec![Vec::new(); tree.nodes.len()];
-        for (column, own) in (0u32..).zip(b) {
+        let shared = b.shared.iter().map(|shared| &shared.entries);
+        for (column, own) in (0u32..).zip(b.own.iter().chain(shared)) {
             own.iter()
                 .for_each(|&(p, value)| entries[of[p]].push((column, p, value)));
         }
@@ -105,7 +153,7 @@ impl Cholesky {
         let size = if formed { m } else { 0 };
         let mut w = Mat::<f64>::zeros(size, size);
         let mut squares = vec![0.0; m];
-        let mut fronts: Vec<Option<Columns>> = tree.nodes.iter().map(|_| None).collect();
+        let mut fronts: Vec<Option<Half>> = tree.nodes.iter().map(|_| None).collect();
         for (s, node) in tree.nodes.iter().enumerate() {
             let columns = &seen[s];
             if columns.is_empty() {
@@ -113,7 +161,7 @@ impl Cholesky {
             }
             let (k, height, width) = (node.columns.len(), node.height(), columns.len());
             let front = fronts[s].take();
-            let mut y = front.unwrap_or_else(|| Columns::zeros(node, width));
+            let mut y = front.unwrap_or_else(|| Half::zeros(node, width));
             for &(column, p, value) in &entries[s] {
                 let at = columns.partition_point(|&c| c < column);
                 y.own[(p - node.columns.start, at)] += value;
@@ -143,18 +191,22 @@ impl Cholesky {
                     }
                 },
             );
-            for (j, &column) in columns.iter().enumerate() {
-                let own = y.own.col_as_slice(j);
-                squares[column as usize] += own.iter().map(|y| y * y).sum::<f64>();
+            let added = b.added_up(columns, &y.own);
+            let (whole, sum) = match &added {
+                Some((whole, sum)) => (&whole[..], sum),
+                None => (&columns[..], &y.own),
+            };
+            for (j, &column) in whole.iter().enumerate() {
+                let own = sum.col_as_slice(j).iter();
+                squares[column as usize] += own.map(|y| y * y).sum::<f64>();
             }
             if formed {
-                add_square(w.as_mut(), columns, y.own.as_ref());
+                add_square(w.as_mut(), whole, sum.as_ref());
             }
             // The part that goes into the columns above is freed at once.
             if let Some(parent) = tree.nodes.get(node.parent) {
                 let width = seen[node.parent].len();
-                let above =
-                    fronts[node.parent].get_or_insert_with(|| Columns::zeros(parent, width));
+                let above = fronts[node.parent].get_or_insert_with(|| Half::zeros(parent, width));
                 above.add(&y.below, tree.places(s), columns, &seen[node.parent]);
             }
         }

@@ -71,8 +71,7 @@ impl<'a> Pieces<'a> {
             return None;
         }
         let work = tree.work();
-        // Supernodes of contact unknowns stand behind all others: their subtrees are no ranges.
-        let light = |s: usize| s < tree.contact && tree.nodes[s].work <= GRAIN * work;
+        let light = |s: usize| tree.nodes[s].work <= GRAIN * work;
         let first = (0..tree.nodes.len()).map(|s| match tree.nodes[s].parent {
             _ if !light(s) => s,
             parent if parent == NONE || !light(parent) => tree.nodes[s].first,

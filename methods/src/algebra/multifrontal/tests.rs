@@ -1,6 +1,7 @@
 //! The factor against the definition of what it is, on matrices whose factors are known or can be formed.
 
 use super::*;
+use crate::algebra::dense::dot;
 use crate::algebra::matrix::SquareMatrix;
 
 /// Numbers in [0, 1) that are the same everywhere (Knuth's MMIX generator).
@@ -61,13 +62,13 @@ fn grid(size: [usize; 3], dofs: usize) -> (usize, Vec<(usize, usize)>) {
     (dofs * nodes.len(), links)
 }
 
-/// A shuffled order and every `step`-th unknown in contact.
-fn shuffled(n: usize, step: usize, random: &mut Random) -> (Vec<usize>, Vec<bool>) {
+/// A shuffled order.
+fn shuffled(n: usize, random: &mut Random) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     for k in (1..n).rev() {
         order.swap(k, (random.next() * (k + 1) as f64) as usize);
     }
-    (order, (0..n).map(|j| j % step == 0).collect())
+    order
 }
 
 fn factor(k: &SquareMatrix, analysis: Analysis) -> (Arc<Ordering>, Result<Cholesky, Failure>) {
@@ -124,18 +125,15 @@ fn systems_are_solved_whatever_the_order() {
     ] {
         let (n, links) = grid(size, dofs);
         let k = matrix(n, &links, &mut random);
-        for step in [n + 1, 2, 7] {
-            let (order, in_contact) = shuffled(n, step, &mut random);
-            let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order, &in_contact));
+        for turn in 0..3 {
+            let order = shuffled(n, &mut random);
+            let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order));
             let cholesky = cholesky.unwrap();
             let mut sorted = ordering.forward.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(0..n));
-            assert!(
-                (0..n).all(|p| in_contact[ordering.forward[p]] == (p >= ordering.contact_begin))
-            );
             let worst = residuals(&k, &ordering, &cholesky);
-            assert!(worst < 1e-14, "{size:?} {step}: {worst}");
+            assert!(worst < 1e-14, "{size:?} {turn}: {worst}");
         }
     }
 }
@@ -146,8 +144,7 @@ fn supernodes_have_the_rows_of_their_columns_and_few_more() {
     let mut random = Random(11);
     let (n, links) = grid([7, 6, 2], 1);
     let k = matrix(n, &links, &mut random);
-    let (order, in_contact) = shuffled(n, 5, &mut random);
-    let Analysis { ordering, tree, .. } = Analysis::new(&k, &order, &in_contact);
+    let Analysis { ordering, tree, .. } = Analysis::new(&k, &shuffled(n, &mut random));
     let mut rows = vec![std::collections::BTreeSet::new(); n];
     for (a, b) in links {
         let (a, b) = (ordering.inverse[a], ordering.inverse[b]);
@@ -186,19 +183,24 @@ fn supernodes_have_the_rows_of_their_columns_and_few_more() {
     );
 }
 
-/// Columns of a few entries each, many of them far apart.
-fn sparse_columns(n: usize, m: usize, random: &mut Random) -> Vec<Vec<(usize, f64)>> {
+/// Columns of a few entries each, many of them far apart, and of every seventh a part of two that are shared.
+fn sparse_columns(n: usize, m: usize, random: &mut Random) -> Columns {
     let mut at = |n: usize| (random.next() * n as f64) as usize;
-    let places: Vec<[usize; 4]> = (0..m)
-        .map(|_| [at(n), at(n), at(n / 9), at(n / 5)])
-        .collect();
-    let column = |(k, own): (usize, &[usize; 4])| {
-        let entries = own.iter().enumerate();
-        entries
-            .map(|(i, &p)| (p, 1.0 - 0.3 * ((i + k) % 5) as f64))
-            .collect()
+    let mut column = |k: usize| -> Vec<(usize, f64)> {
+        let places = [at(n), at(n), at(n / 9), at(n / 5)].into_iter().enumerate();
+        let value = |i: usize| 1.0 - 0.3 * ((i + k) % 5) as f64;
+        places.map(|(i, p)| (p, value(i))).collect()
     };
-    places.iter().enumerate().map(column).collect()
+    let own = (0..m).map(&mut column).collect();
+    let shared = |k: usize| Shared {
+        entries: column(k),
+        parts: (k as u32..m as u32)
+            .step_by(7)
+            .map(|j| (j, 0.1 * j as f64))
+            .collect(),
+    };
+    let shared = [0, 3].map(shared).into();
+    Columns { own, shared }
 }
 
 /// Source: W = Bᵀ A⁻¹ B by solves with the factor. Tolerance: rounding. Goal: the diagonal has the same bits without W.
@@ -209,20 +211,31 @@ fn what_is_condensed_along_the_tree_is_what_solves_give() {
         let (n, links) = grid(size, dofs);
         let k = matrix(n, &links, &mut random);
         let order: Vec<usize> = (0..n).collect();
-        let (_, cholesky) = factor(&k, Analysis::new(&k, &order, &vec![false; n]));
+        let (_, cholesky) = factor(&k, Analysis::new(&k, &order));
         let cholesky = cholesky.unwrap();
         let b = sparse_columns(n, m, &mut random);
         let (w, diagonal) = cholesky.condense(&b, true);
         assert_eq!(cholesky.condense(&b, false).1, diagonal);
-        for j in (0..m).step_by(11) {
-            let mut x = vec![0.0; n];
-            b[j].iter().for_each(|&(p, value)| x[p] += value);
-            cholesky.solve(&mut x);
-            for i in 0..=j {
-                let product: f64 = b[i].iter().map(|&(p, value)| value * x[p]).sum();
-                assert!((w[(i, j)] - product).abs() < 1e-13, "{i} {j}");
+        let mut whole = vec![vec![0.0; n]; m];
+        for (j, own) in b.own.iter().enumerate() {
+            own.iter().for_each(|&(p, value)| whole[j][p] += value);
+        }
+        for Shared { entries, parts } in &b.shared {
+            for (&(j, part), &(p, value)) in parts
+                .iter()
+                .flat_map(|j| entries.iter().map(move |e| (j, e)))
+            {
+                whole[j as usize][p] += part * value;
             }
-            assert!((w[(j, j)] - diagonal[j]).abs() < 1e-13);
+        }
+        for j in (0..m).step_by(7) {
+            let mut x = whole[j].clone();
+            cholesky.solve(&mut x);
+            for (i, own) in whole[..=j].iter().enumerate() {
+                let off = (w[(i, j)] - dot(own, &x)).abs();
+                assert!(off < 1e-13 * w[(j, j)].max(1.0), "{i} {j} {off:e}");
+            }
+            assert!((w[(j, j)] - diagonal[j]).abs() <= 1e-13 * w[(j, j)]);
         }
     }
 }
@@ -232,20 +245,15 @@ fn one_thread_and_four_give_the_same_bits() {
     let mut random = Random(3);
     let (n, links) = grid([15, 14, 13], 3);
     let k = matrix(n, &links, &mut random);
-    let (order, in_contact) = shuffled(n, 9, &mut random);
     // Layer by layer, so that fronts are large enough to be shared.
-    let order = {
-        let mut sorted = order;
-        sorted.sort_unstable();
-        sorted
-    };
+    let order: Vec<usize> = (0..n).collect();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
         pool.install(|| {
-            let (_, cholesky) = factor(&k, Analysis::new(&k, &order, &in_contact));
+            let (_, cholesky) = factor(&k, Analysis::new(&k, &order));
             let cholesky = cholesky.unwrap();
             let mut x: Vec<f64> = (0..n).map(|j| (j % 13) as f64).collect();
             cholesky.solve(&mut x);
@@ -269,7 +277,7 @@ fn the_first_column_without_a_positive_pivot_is_named() {
     }
     let k = SquareMatrix::symmetric(n, k.col_ptr().to_vec(), k.row_idx().to_vec(), values).unwrap();
     let order: Vec<usize> = (0..n).collect();
-    let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order, &vec![false; n]));
+    let (ordering, cholesky) = factor(&k, Analysis::new(&k, &order));
     let Err(Failure::NotPositive(column)) = cholesky.map(|_| ()) else {
         panic!("a factor of an indefinite matrix");
     };

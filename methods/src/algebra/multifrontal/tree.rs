@@ -39,12 +39,10 @@ impl Supernode {
     }
 }
 
-/// Supernodes, children before parents; those of the contact unknowns last.
+/// Supernodes, children before parents.
 #[derive(Debug, Default)]
 pub(crate) struct AssemblyTree {
     pub nodes: Vec<Supernode>,
-    /// First supernode of contact unknowns.
-    pub contact: usize,
     /// Children of a supernode, in increasing order.
     pub children: Vec<Vec<usize>>,
     /// Rows below the columns, increasing.
@@ -98,7 +96,6 @@ impl AssemblyTree {
             self.nodes[child].parent = self.nodes.len();
             work += self.nodes[child].work;
         }
-        // Contact supernodes stand behind all others, so that their subtrees have gaps: they are never taken as a range.
         let first = children
             .first()
             .map_or(self.nodes.len(), |&c| self.nodes[c].first);
