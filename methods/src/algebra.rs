@@ -15,3 +15,4 @@ pub(crate) mod sparse;
 pub(crate) mod spectrum;
 pub(crate) mod stiffness;
 pub(crate) mod strips;
+pub(crate) mod tied;

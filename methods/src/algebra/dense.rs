@@ -48,6 +48,11 @@ impl DenseLu {
         &mut self.factors
     }
 
+    /// The matrix that is to be factored.
+    pub fn matrix(&mut self) -> &mut Full {
+        &mut self.factors
+    }
+
     /// Factors the matrix that stands in place of the factors; false if it is singular to working precision.
     pub fn factor(&mut self) -> bool {
         let (a, rows) = (&mut self.factors, &mut self.rows);

@@ -10,9 +10,9 @@
 use std::ops::Range;
 
 use crate::algebra::delassus::Delassus;
-use crate::algebra::dense::DenseLu;
 use crate::algebra::plain::Full;
 use crate::algebra::sparse::{Sparse, SparseLu};
+use crate::algebra::tied::{Tie, TiedLu};
 use crate::condensed::problem::ContactProblem;
 
 /// Row k of the linearised equations at one point: Σ a_l δP_l + Σ c_l δv_l = −h.
@@ -62,7 +62,7 @@ impl Law<'_> {
 /// The system, assembled and factored. The memory of one serves the next.
 #[derive(Default)]
 pub(crate) struct Bordered {
-    lu: DenseLu,
+    lu: TiedLu,
     /// In its place where few entries of W are not 0.
     sparse: Option<Box<SparseLu>>,
     /// Unknowns are amplitudes times this.
@@ -72,6 +72,7 @@ pub(crate) struct Bordered {
     active: Vec<Place>,
     laws: Vec<LawPoint>,
     right: Vec<f64>,
+    work: Vec<f64>,
 }
 
 impl Bordered {
@@ -140,20 +141,33 @@ impl Bordered {
 
     /// The full matrix, in place of the factors.
     fn fill(&mut self, problem: &ContactProblem<'_>, w: &dyn Delassus, law: &Law<'_>, spring: f64) {
-        let (q, rho, active) = (
-            &problem.operator.modes.q,
-            problem.operator.rho,
-            &self.active,
-        );
+        let (q, rho) = (&problem.operator.modes.q, problem.operator.rho);
+        let (size, active) = (self.active.len() + q.len(), &mut self.active);
+        let ties = match law {
+            Law::Rows { a, c } => ties(active, a, c),
+            Law::Columns { .. } => Vec::new(),
+        };
+        let tied: Vec<Place> = ties.iter().map(|tie| active[tie.d].clone()).collect();
+        active.retain(|place| tied.binary_search_by_key(&place.0, |tied| tied.0).is_err());
+        self.lu.ties = ties;
+        let (J, across) = self.lu.zeros(size);
         let n = active.len();
-        let J = self.lu.zeros(n + q.len());
         match law {
             Law::Rows { a, c } => {
                 law_points(active, c, &mut self.laws);
-                let mut work = Vec::new();
+                let (rows, mut work) = ((&active[..], *a, &self.laws[..]), Vec::new());
                 for (j, place) in active.iter().enumerate() {
-                    let column = &mut J.column_mut(j)[..n];
-                    let rows = (&active[..], *a, &self.laws[..]);
+                    law_column(
+                        problem,
+                        w,
+                        place,
+                        rows,
+                        &mut work,
+                        &mut J.column_mut(j)[..n],
+                    );
+                }
+                for (j, place) in tied.iter().enumerate() {
+                    let column = &mut across.col_as_slice_mut(j)[..n];
                     law_column(problem, w, place, rows, &mut work, column);
                 }
             }
@@ -164,11 +178,14 @@ impl Bordered {
             for (b, place) in active.iter().enumerate() {
                 (J[(b, n + j)], J[(n + j, b)]) = law.border(place, q, rho);
             }
+            for (b, place) in tied.iter().enumerate() {
+                across[(n + j, b)] = law.border(place, q, rho).1;
+            }
         }
     }
 
     /// The factors of a full matrix.
-    pub fn factors(&self) -> Option<&DenseLu> {
+    pub fn factors(&self) -> Option<&TiedLu> {
         self.sparse.is_none().then_some(&self.lu)
     }
 
@@ -192,7 +209,7 @@ impl Bordered {
         self.right.extend(f.iter().copied().chain(balance));
         let finite = match &self.sparse {
             Some(lu) => lu.solve_into(&self.right, x),
-            None => self.lu.solve_into(&self.right, x),
+            None => self.lu.solve_into(&self.right, x, &mut self.work),
         };
         beta.clear();
         beta.extend(x.drain(f.len()..).map(|b| b / self.amplitude));
@@ -219,6 +236,33 @@ pub(crate) fn place(problem: &ContactProblem<'_>, indices: &[usize], places: &mu
             places.push((k, own.clone()));
         }
     }
+}
+
+/// Second rows in 2D that read the gap alone, as the first does, or nothing: where a point slips.
+fn ties(active: &[Place], a: Blocks<'_>, c: Blocks<'_>) -> Vec<Tie> {
+    /// Largest α: beyond, pivots tell better.
+    const STEEP: f64 = 1e3;
+    let tie = |(before, rows): (usize, &[Place])| {
+        let (k, d) = (rows[0].0, rows[1].0);
+        let (gap, alone) = (c[k][0], c[k][1] == 0.0 && c[k][0] != 0.0);
+        if rows[0].1 != rows[1].1
+            || rows[0].1.len() != 2
+            || c[d][1] != 0.0
+            || c[d][0] != 0.0 && !alone
+        {
+            return None;
+        }
+        let phi = if c[d][0] == 0.0 { 0.0 } else { c[d][0] / gap };
+        let [by, pivot] = [0, 1].map(|l| a[d][l] - phi * a[k][l]);
+        let tie = Tie {
+            d: before + 1,
+            alpha: -by / pivot,
+            phi,
+            pivot,
+        };
+        (tie.alpha.abs() < STEEP).then_some(tie)
+    };
+    active.windows(2).enumerate().filter_map(tie).collect()
 }
 
 /// C of these rows in place of what `laws` holds.

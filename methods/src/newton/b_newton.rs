@@ -33,7 +33,8 @@
 //! problem is the solution, so it ends after finitely many steps. No global guarantee: Coulomb friction is no minimisation.
 //!
 //! # Skips
-//! An open crack is one linear solve. Open points leave the dense LU; without friction there are no tangential rows.
+//! An open crack is one linear solve. Open points leave the dense LU, and in 2D the tangential rows of slipping ones; without friction
+//! there are none.
 //! On 256 active rows and more, a tangent of which few rows have changed is not factored again.
 //!
 //! # Failure modes

@@ -42,7 +42,8 @@
 //! methods here; a piece that gets loose again and again is reported as a mechanism.
 //!
 //! # Skips
-//! An open crack is one linear solve. Inactive points leave the dense LU; without friction there are no tangential rows.
+//! An open crack is one linear solve. Inactive points leave the dense LU, and in 2D the tangential rows of slipping ones; without
+//! friction there are none.
 //! On 256 active rows and more, a tangent of which few rows have changed is not factored again.
 
 #![allow(non_snake_case)]

@@ -23,6 +23,7 @@ use faer::{Accum, Mat, Par};
 use crate::algebra::delassus::Delassus;
 use crate::algebra::dense::{DenseLu, SINGULAR, dot, larger, minus, mul_add};
 use crate::algebra::strips::{WORTH_THREADS, column_strips, for_all};
+use crate::algebra::tied::TiedLu;
 use crate::condensed::point_row::{
     Blocks, LawPoint, Place, law_border, law_column, law_points, place,
 };
@@ -105,7 +106,7 @@ impl Factored {
     pub fn solve(
         &mut self,
         problem: &ContactProblem<'_>,
-        lu: &DenseLu,
+        lu: &TiedLu,
         rows: Rows<'_>,
         f: &[f64],
     ) -> Solved {
@@ -113,7 +114,7 @@ impl Factored {
             return Solved::TooManyChanges;
         }
         let changes = self.changes(rows);
-        if !self.is_worth(&changes) {
+        if !self.is_worth(&changes, lu.size()) {
             return Solved::TooManyChanges;
         }
         match self.solve_changed(problem, lu, rows, &changes, f) {
@@ -135,23 +136,25 @@ impl Factored {
         slack.chain(new.map(|&k| Unknown::New(k))).collect()
     }
 
-    /// Whether a step costs little enough: 2 n² operations for a new column of Z, 2 k² n + 2k³/3 for k changes, 2n³/3 for all.
-    fn is_worth(&self, changes: &[Unknown]) -> bool {
+    /// Whether a step costs little enough: 2 n m operations for a new column of Z, 2 k² n + 2k³/3 for k changes, 2m³/3 for all m
+    /// rows of the factors.
+    fn is_worth(&self, changes: &[Unknown], m: usize) -> bool {
         let missing = changes
             .iter()
             .filter(|change| !self.solved.contains_key(change));
-        let (n, k, new) = (
+        let (n, m, k, new) = (
             self.active.len() as f64,
+            m as f64,
             changes.len() as f64,
             missing.count() as f64,
         );
-        2.0 * n * n * new + 2.0 * k * k * n + k * k * k / 1.5 <= SHARE * n * n * n / 1.5
+        2.0 * n * m * new + 2.0 * k * k * n + k * k * k / 1.5 <= SHARE * m * m * m / 1.5
     }
 
     fn solve_changed(
         &mut self,
         problem: &ContactProblem<'_>,
-        lu: &DenseLu,
+        lu: &TiedLu,
         rows: Rows<'_>,
         changes: &[Unknown],
         f: &[f64],
@@ -176,7 +179,7 @@ impl Factored {
     fn solve_columns(
         &mut self,
         problem: &ContactProblem<'_>,
-        lu: &DenseLu,
+        lu: &TiedLu,
         w: &dyn Delassus,
         changes: &[Unknown],
     ) -> Option<()> {
@@ -204,7 +207,7 @@ impl Factored {
             }
         }
         self.listed = Some(listed);
-        let threads = (n * n) as f64 * missing.len() as f64 > WORTH_THREADS;
+        let threads = (n * lu.size()) as f64 * missing.len() as f64 > WORTH_THREADS;
         let strips = column_strips(Z.as_mut(), WIDTH);
         for_all(strips, threads, |(_, strip)| lu.solve_in_place(strip));
         for (j, change) in missing.into_iter().enumerate() {
@@ -247,7 +250,7 @@ impl Listed {
 
 /// The changes of a step, factored.
 struct Step<'s> {
-    lu: &'s DenseLu,
+    lu: &'s TiedLu,
     rows: Rows<'s>,
     /// S₀.
     before: &'s [usize],
@@ -266,7 +269,7 @@ impl<'s> Step<'s> {
     fn new(
         base: &'s Factored,
         problem: &ContactProblem<'_>,
-        lu: &'s DenseLu,
+        lu: &'s TiedLu,
         rows: Rows<'s>,
         changes: &'s [Unknown],
     ) -> Option<Self> {

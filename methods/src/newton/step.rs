@@ -2,7 +2,8 @@
 //! ```text
 //! A δP + C δv = −h  at every point,   δv = W δP + Q δβ,   Qᵀ (P + δP) = c
 //! ```
-//! Condensed: rows that read δP = const are eliminated, the rest is one dense LU, or few changes of an earlier one (`reuse.rs`).
+//! Condensed: rows that read δP = const are eliminated, the rest is one dense LU, of which rows that tie two forces to each other take
+//! no part (`tied.rs`), or few changes of an earlier one (`reuse.rs`).
 //! Monolithic: the same rows beside K δu = Bᵀ δP on all unknowns, as papers usually run Newton methods. Both give the same step to
 //! rounding.
 

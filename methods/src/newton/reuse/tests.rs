@@ -184,17 +184,17 @@ fn a_step_costs_at_most_half_of_a_factorisation() {
             let rows = rows_of(problem, &all, (&a, &c));
             let mut earlier = remembered(rows);
             assert!(earlier.is_of(rows));
-            let lu = DenseLu::default();
+            let lu = TiedLu::default();
             let found = earlier.solve(problem, &lu, rows, &[0.0; ROWS]);
             assert!(matches!(found, Solved::TooManyChanges), "too few rows");
             let slack = |most: usize| (0..most).map(Unknown::Slack).collect::<Vec<_>>();
-            assert!(earlier.is_worth(&slack(6)));
-            assert!(!earlier.is_worth(&slack(10)));
+            assert!(earlier.is_worth(&slack(6), ROWS));
+            assert!(!earlier.is_worth(&slack(10), ROWS));
             for known in slack(10) {
                 earlier.solved.insert(known, vec![0.0; ROWS]);
             }
-            assert!(earlier.is_worth(&slack(10)));
-            assert!(!earlier.is_worth(&slack(30)));
+            assert!(earlier.is_worth(&slack(10), ROWS));
+            assert!(!earlier.is_worth(&slack(30), ROWS));
         },
     );
 }
