@@ -14,7 +14,7 @@ use stickslip_xfem::geometry::{Point, add_scaled};
 use stickslip_xfem::loads::exact_values::exact_values;
 use stickslip_xfem::loads::nodal_forces::no_force;
 
-use crate::case::{Case, CaseError, ExactSpec, History, LoadKind};
+use crate::case::{Case, CaseError, ExactSpec, History, LoadKind, LoadSpec};
 use crate::model::body::{Body, BodyError};
 use crate::model::fixed_loads::FixedLoad;
 use crate::model::nodal_forces::{Loaded, vector};
@@ -103,15 +103,20 @@ impl<'a> Loading<'a> {
         total
     }
 
+    /// Whether a force per volume acts.
+    pub fn has_body_force(&self) -> bool {
+        let mut kinds = self.case.loads.iter().map(|load| &load.kind);
+        kinds.any(|kind| matches!(kind, LoadKind::Body(..) | LoadKind::ExactBody))
+    }
+
     /// Force per volume at the end of an increment at a point on a side of the first crack [N/m³].
     pub fn body_force(&self, increment: usize, x: &Point, side: f64) -> Point {
+        let factor = |load: &LoadSpec| self.factor(&load.history, increment);
         let mut total = [0.0; 3];
         for load in &self.case.loads {
             let (factor, force) = match &load.kind {
                 LoadKind::Body(_, Some(own)) if own.side != side => continue,
-                LoadKind::Body(density, _) => {
-                    (self.factor(&load.history, increment), vector(density))
-                }
+                LoadKind::Body(density, _) => (factor(load), vector(density)),
                 LoadKind::ExactBody => match self.exact(increment) {
                     Some(field) => (1.0, field.body_force(x, side)),
                     None => continue,

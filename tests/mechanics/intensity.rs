@@ -60,7 +60,7 @@ fn of_exact(
     let fields = Fields {
         gradients: &gradients,
         faces: if loaded { &faces } else { &[] },
-        body_force: &|_, _| [0.0; 3],
+        body_force: None,
     };
     let domain = Domain {
         radius,
@@ -136,7 +136,7 @@ fn a_smooth_field_with_body_force_has_no_intensity() {
             let fields = Fields {
                 gradients: &gradients,
                 faces,
-                body_force: &|_, _| force,
+                body_force: Some(&|_, _| force),
             };
             let domain = Domain {
                 radius: 0.25,
@@ -187,7 +187,7 @@ fn a_domain_that_does_not_stand_alone_is_refused() {
     let fields = Fields {
         gradients: &|_, points| Ok(vec![[[0.0; 3]; 3]; points.len()]),
         faces: &[],
-        body_force: &|_, _| [0.0; 3],
+        body_force: None,
     };
     let at = |radius: f64| {
         let domain = Domain {
@@ -281,7 +281,7 @@ fn errors(field: &Griffith, cells: usize, tractions: Tractions, stress: &str) ->
     let surface = surface(&body, 5);
     let mut worst = [0.0f64; 2];
     let loads = Loads {
-        body_force: &|_, _| [0.0; 3],
+        body_force: None,
         initial_stress: [[0.0; 3]; 3],
     };
     let solved = SolvedBody::new(&body, &surface, [&now.u, &now.p], &loads);

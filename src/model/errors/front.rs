@@ -28,7 +28,7 @@ pub(super) fn rows(
         field.body_force(x, side)
     };
     let loads = Loads {
-        body_force: &body_force,
+        body_force: Some(&body_force),
         initial_stress: [[0.0; 3]; 3],
     };
     let solved = SolvedBody::new(body, surface, [&now.u, &now.p], &loads);

@@ -9,7 +9,7 @@ use crate::cut::placement::{self, cells_at};
 use crate::fields::sampling::ComparisonPoint;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
-use crate::intensity::interaction::{Domain, Fields, Obstacle, interaction};
+use crate::intensity::interaction::{BodyForce, Domain, Fields, Obstacle, interaction};
 use crate::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use crate::stiffness::cell_matrix::CellError;
 
@@ -124,8 +124,8 @@ impl TipIntensities {
 
 /// Loads beside the displacement, for the interaction integral.
 pub struct Loads<'a> {
-    /// Force per volume at a point and side [N/m³].
-    pub body_force: &'a (dyn Fn(&Point, Option<f64>) -> Point + Sync),
+    /// If there is any.
+    pub body_force: Option<&'a BodyForce<'a>>,
     /// Uniform initial stress [Pa].
     pub initial_stress: [Point; 3],
 }

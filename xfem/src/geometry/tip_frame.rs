@@ -388,12 +388,8 @@ mod tests {
             }
             let opposite = add_scaled(&tip.position, -1.0, &sub(&x, &tip.position));
             let [p, q] = [1e-9, -1e-9].map(|d| add_scaled(&opposite, d, &across));
-            let jumps = tip
-                .branch(&p, None)
-                .0
-                .into_iter()
-                .zip(tip.branch(&q, None).0);
-            assert!(jumps.into_iter().all(|(a, b)| (a - b).abs() < 1e-7), "{t}");
+            let [p, q] = [p, q].map(|x| tip.branch(&x, None).0);
+            assert!((0..4).all(|l| (p[l] - q[l]).abs() < 1e-7), "{t}");
         }
     }
 

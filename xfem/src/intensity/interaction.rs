@@ -35,14 +35,17 @@ use super::williams::{Mode, Williams, plane_modulus};
 pub type Gradients<'a> =
     dyn Fn(usize, &[ComparisonPoint]) -> Result<Vec<[Point; 3]>, CellError> + Sync + 'a;
 
+/// Force per volume at a point and side [N/m³].
+pub type BodyForce<'a> = dyn Fn(&Point, Option<Side>) -> Point + Sync + 'a;
+
 /// The fields of the integral.
 pub struct Fields<'a> {
     /// The displacement, through its gradients.
     pub gradients: &'a Gradients<'a>,
     /// Points of the crack surface with the contact traction on side 1, in space [Pa].
     pub faces: &'a [(&'a SurfacePoint, Point)],
-    /// Force per volume at a point and side [N/m³].
-    pub body_force: &'a (dyn Fn(&Point, Option<Side>) -> Point + Sync),
+    /// If there is any.
+    pub body_force: Option<&'a BodyForce<'a>>,
 }
 
 /// The domain: all cells with a node within a radius of the tip; q is 1 at those nodes and bilinear in the cells.
@@ -107,7 +110,9 @@ pub fn interaction(
     if let Some(obstacle) = obstacle(integrator, tip, &fronts, &inside, &cells) {
         return Ok(Err(obstacle));
     }
-    let own_faces = (fields.faces.iter()).filter(|(p, _)| cells.binary_search(&p.cell).is_ok());
+    let range = cells.first()..=cells.last();
+    let in_domain = |c: &usize| range.contains(&Some(c)) && cells.binary_search(c).is_ok();
+    let own_faces = fields.faces.iter().filter(|(p, _)| in_domain(&p.cell));
     let bends = |(p, _): &(&SurfacePoint, Point)| {
         let away = sub(&p.x, &tip.position);
         dot(&away, &tip.normal).abs() > STRAIGHT * norm(&away)
@@ -118,6 +123,9 @@ pub fn interaction(
     let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
     let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
         let ring = count(cell) < mesh.kind.nodes();
+        if !ring && fields.body_force.is_none() {
+            return Ok([0.0; 2]); // q = 1
+        }
         let points = comparison_points(integrator, cell, &fronts, domain.rule)?;
         let gradients = if ring {
             (fields.gradients)(cell, &points)?
@@ -128,10 +136,7 @@ pub fn interaction(
         for (at, h) in points.iter().zip(&gradients) {
             let p = &at.point;
             let (q, dq) = weight(mesh, cell, &inside, &p.xi);
-            let force = (fields.body_force)(&p.x, at.side);
-            if !ring && force == [0.0; 3] {
-                continue;
-            }
+            let force = fields.body_force.map_or([0.0; 3], |f| f(&p.x, at.side));
             let sigma = stress(lame, 2, h);
             let slope = ahead(h, tip);
             for (sum, mode) in sums.iter_mut().zip(&modes) {
@@ -149,10 +154,8 @@ pub fn interaction(
     };
     // In the order of the cells, whatever thread a part comes from.
     let parts: Vec<[f64; 2]> = cells.par_iter().map(of_cell).collect::<Result<_, _>>()?;
-    let mut total = [0.0; 2];
-    for part in parts {
-        total = [0, 1].map(|k| total[k] + part[k]);
-    }
+    let add = |total: [f64; 2], part: [f64; 2]| [0, 1].map(|k| total[k] + part[k]);
+    let mut total = parts.into_iter().fold([0.0; 2], add);
     for (point, traction) in own_faces {
         let (q, _) = weight(mesh, point.cell, &inside, &point.xi);
         for (sum, mode) in total.iter_mut().zip(&modes) {
