@@ -1,12 +1,13 @@
 //! Time and memory that a run by `hybrid` will take, told from a body and the analysis of its stiffness.
 //!
 //! ```text
-//!   t = set-up + 8 L/0.8 GB/s + F/150 G/s + C/90 G/s + t₀ + t₁ n + N (8 L/6 GB/s + m³/135 G/s + m²/29 M/s + t₂ n + t₃ tips)
+//!   t = set-up + 8 L/0.8 GB/s + F/150 G/s + C/90 G/s + t₀ + t₁ n + N (8 L/6 GB/s + m³/a + m²/29 M/s + t₂ n + t₃ tips)
 //!   M = M₀ + 1.23 · 8 L + 0.59 · 16 m² + 65 nnz K + M₁ n
 //! ```
 //!
 //! L: numbers of the factor of K, F, C: multiplications and additions to factor and to condense, m: rows of W, N: increments, n:
-//! cells. Set-up is as measured; the rest was fitted to 27 bodies on two cores with AVX-512.
+//! cells, a: 400 G/s in 2D, where slipping points leave half of their rows out, 135 G/s in 3D. Set-up is as measured; the rest was fitted
+//! to 27 bodies on two cores with AVX-512.
 
 use stickslip_xfem::discretisation::tips::fronts;
 
@@ -18,7 +19,7 @@ const M0: f64 = 2.3e7;
 /// t₁, t₂, t₃ [s] and M₁ [B], in 2D and 3D: fields and pictures, quantities of a cell and of a tip.
 const T1: [f64; 2] = [6e-7, 3.9e-5];
 const T2: [f64; 2] = [3.4e-6, 2.4e-5];
-const T3: [f64; 2] = [3.1e-3, 0.0];
+const T3: [f64; 2] = [1.5e-3, 0.0];
 const M1: [f64; 2] = [0.0, 1100.0];
 
 /// What a run takes.
@@ -38,7 +39,7 @@ pub fn predicted(body: &Body, increments: usize) -> Option<Cost> {
     let factor = 8.0 * own.entries as f64;
     let set_up = body.setup.setup_s + body.setup.assembly_s + own.analysis_s;
     let to_w = factor / 8e8 + own.factorisation / 1.5e11 + own.condensation / 9e10;
-    let contact = factor / 6e9 + m.powi(3) / 1.35e11 + m.powi(2) / 2.9e7;
+    let contact = factor / 6e9 + m.powi(3) / [4e11, 1.35e11][solid] + m.powi(2) / 2.9e7;
     let increment = contact + T2[solid] * cells + T3[solid] * fronts(body).len() as f64;
     let entries = k.values().len() as f64;
     Some(Cost {

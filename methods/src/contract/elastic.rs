@@ -244,13 +244,14 @@ impl Elastic {
     pub fn cost(&self) -> Option<ElasticCost> {
         let (Analysis { ordering, tree, .. }, analysis_s) = self.stiffness.plan()?;
         let rows = self.rows().source;
-        let touched = |&i: &usize| {
+        let touched = |&i: &usize| -> Vec<usize> {
             let own = self.jump.row(i).filter(|e| e.1 != 0.0);
             own.map(|e| ordering.inverse[e.0]).collect()
         };
+        let touched: Vec<_> = rows.iter().map(touched).collect();
         Some(ElasticCost {
             factorisation: tree.work(),
-            condensation: tree.condensation(rows.iter().map(touched), !self.floating.is_empty()),
+            condensation: tree.condensation(&touched, !self.floating.is_empty()),
             entries: tree.entries(),
             rows: rows.len(),
             analysis_s: *analysis_s,

@@ -45,20 +45,24 @@ impl AssemblyTree {
         seen
     }
 
-    /// Multiplications and additions of W for a B whose columns have entries at these positions; `alike`: at those of all, as where a
-    /// body floats.
-    pub fn condensation(&self, b: impl Iterator<Item = Vec<usize>>, alike: bool) -> f64 {
-        let (of, mut width) = (self.supernodes(), 1);
-        let begins = (0u32..).zip(b).flat_map(|(column, at)| {
-            width = if alike { column + 1 } else { 1 };
-            let column = if alike { 0 } else { column };
-            at.into_iter().map(move |p| (column, p))
-        });
-        let seen = self.seen(begins.map(|(column, p)| (column, of[p])));
+    /// Multiplications and additions of W for a B whose columns have entries at these positions; `shared`: and at those of all others,
+    /// as where a body floats.
+    pub fn condensation(&self, b: &[Vec<usize>], shared: bool) -> f64 {
+        const ALL: u32 = u32::MAX;
+        let of = self.supernodes();
+        let own = (0..)
+            .zip(b)
+            .flat_map(|(c, at)| at.iter().map(move |p| (c, p)));
+        let all = b.iter().flatten().filter(|_| shared).map(|p| (ALL, p));
+        let seen = self.seen(own.chain(all).map(|(column, &p)| (column, of[p])));
         let work = |(node, columns): (&Supernode, &Vec<u32>)| {
-            let columns = columns.len() * width as usize;
-            let [k, h, a] = [node.columns.len(), node.height(), columns].map(|n| n as f64);
-            a * k * (k + 2.0 * (h - k) + a)
+            let whole = match columns.last() {
+                Some(&ALL) => b.len(),
+                _ => columns.len(),
+            };
+            let sizes = [node.columns.len(), node.height(), columns.len(), whole];
+            let [k, h, a, whole] = sizes.map(|n| n as f64);
+            k * (a * (k + 2.0 * (h - k)) + whole * whole)
         };
         self.nodes.iter().zip(&seen).map(work).sum()
     }
