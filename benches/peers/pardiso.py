@@ -4,8 +4,8 @@
     python3 -m venv peers && peers/bin/pip install pypardiso
     peers/bin/python benches/peers/pardiso.py benches/scale/cube_30.toml --program target/release/stickslip --out reports/peers
 
-Both factor the same K, symmetric positive definite, and use as many threads as asked for. PARDISO orders by METIS and keeps no
-unknowns for last; stickslip may eliminate the contact unknowns last, and has the Schur complement on the contact rows afterwards.
+Both factor the same K, symmetric positive definite, and use as many threads as asked for. PARDISO orders by METIS, stickslip by
+nested dissection of the grid; it has the Schur complement on the contact rows afterwards.
 """
 
 import argparse
@@ -93,7 +93,7 @@ def main():
             for threads in given.threads:
                 own, other = [], []
                 for _ in range(given.rounds):
-                    own.append(ours(given.program, case, threads, os.path.join(folder, "run")))
+                    own.append(ours(given.program, case, threads, os.path.join(folder, pathlib.Path(case).stem)))
                     other.append(theirs(matrix, threads))
                 numeric = [o[1] for o in other]
                 total = [o[0] + o[1] for o in other]
