@@ -24,27 +24,40 @@ pub(crate) fn condense(
     rows: &[usize],
 ) -> Result<Condensed, MethodError> {
     check_rows(rows.len())?;
-    let sorted = sorted(factor, jump, rows);
-    let (mut w, squares) = factor.condense(&columns(factor, &[(jump, &of(rows, &sorted))]), true);
+    let (mut w, diagonal, position) = along_tree(factor, jump, rows, true);
     // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
     mirror_upper(&mut w);
-    let mut position = vec![0; rows.len()];
-    for (s, &i) in sorted.iter().enumerate() {
-        position[i] = s;
-    }
     permute(&mut w, &position);
-    Ok((w, position.iter().map(|&s| squares[s]).collect()))
+    Ok((w, diagonal))
 }
 
 /// The diagonal of W for the listed rows of B: W is not formed.
 pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<f64> {
-    let sorted = sorted(factor, jump, rows);
-    let squares = factor
-        .condense(&columns(factor, &[(jump, &of(rows, &sorted))]), false)
-        .1;
-    let mut own = vec![0.0; rows.len()];
-    (sorted.iter().zip(squares)).for_each(|(&k, value)| own[k] = value);
-    own
+    along_tree(factor, jump, rows, false).1
+}
+
+/// W for the listed rows in another order if it is to be formed, of which the upper triangle counts, its diagonal in theirs, and
+/// where they stand in it. Rows that begin early in L stand first: what a supernode sees stands together then.
+fn along_tree(
+    factor: &Factor,
+    jump: &JumpOperator,
+    rows: &[usize],
+    formed: bool,
+) -> (Mat<f64>, Vec<f64>, Vec<usize>) {
+    let first = |k: usize| {
+        let own = jump.touched(rows[k]);
+        own.map(|e| factor.ordering.inverse[e.0]).min()
+    };
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by_cached_key(|&k| (first(k), k));
+    let sorted: Vec<usize> = order.iter().map(|&k| rows[k]).collect();
+    let (w, squares) = factor.condense(&columns(factor, &[(jump, &sorted)]), formed);
+    let mut position = vec![0; rows.len()];
+    for (s, &k) in order.iter().enumerate() {
+        position[k] = s;
+    }
+    let diagonal = position.iter().map(|&s| squares[s]).collect();
+    (w, diagonal, position)
 }
 
 /// The traction operator S condensed to some rows: T and X.
@@ -124,39 +137,28 @@ fn columns(factor: &Factor, b: &[(&JumpOperator, &[usize])]) -> Columns {
     let placed = |j: usize, value: f64| (!pinned[j]).then(|| (factor.ordering.inverse[j], value));
     let rows = || {
         b.iter()
-            .flat_map(|(b, rows)| rows.iter().map(move |&i| b.row(i)))
+            .flat_map(|&(b, rows)| rows.iter().map(move |&i| (b, i)))
     };
-    let own = |row| {
-        let row = Iterator::filter(row, |e: &(usize, f64)| e.1 != 0.0);
+    let own = |(b, i): (&JumpOperator, usize)| {
+        let row = b.touched(i);
         row.filter_map(|(j, b)| placed(j, b * factor.scale[j]))
             .collect()
     };
-    let shared = factor.balance.motions.iter().map(|motion| Shared {
-        entries: motion.s.iter().filter_map(|&(j, s)| placed(j, s)).collect(),
-        parts: (0..)
-            .zip(rows().map(|row| -row.map(|(j, b)| motion.r[j] * b).sum::<f64>()))
-            .filter(|part| part.1 != 0.0)
-            .collect(),
+    let shared = factor.balance.motions.iter().map(|motion| {
+        let resultant = |(b, i): (&JumpOperator, usize)| {
+            let row = b.row(i).map(|(j, b)| motion.r[j] * b);
+            row.sum::<f64>()
+        };
+        let parts = (0..).zip(rows().map(|row| -resultant(row)));
+        Shared {
+            entries: motion.s.iter().filter_map(|&(j, s)| placed(j, s)).collect(),
+            parts: parts.filter(|part| part.1 != 0.0).collect(),
+        }
     });
     Columns {
         own: rows().map(own).collect(),
         shared: shared.collect(),
     }
-}
-
-/// Places in `rows`, those first that begin early in L: what a supernode sees stands together then.
-fn sorted(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<usize> {
-    let first = |k: usize| {
-        let own = jump.row(rows[k]).filter(|e| e.1 != 0.0);
-        own.map(|e| factor.ordering.inverse[e.0]).min()
-    };
-    let mut sorted: Vec<usize> = (0..rows.len()).collect();
-    sorted.sort_by_cached_key(|&k| (first(k), k));
-    sorted
-}
-
-fn of(rows: &[usize], places: &[usize]) -> Vec<usize> {
-    places.iter().map(|&k| rows[k]).collect()
 }
 
 #[cfg(test)]

@@ -293,6 +293,11 @@ impl JumpOperator {
             .zip(self.values[range].iter().copied())
     }
 
+    /// The same without entries of 0.
+    pub(crate) fn touched(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.row(i).filter(|e| e.1 != 0.0)
+    }
+
     /// out = B u.
     pub fn mul(&self, u: &[f64], out: &mut [f64]) {
         for i in 0..self.rows {

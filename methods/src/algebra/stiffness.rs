@@ -198,10 +198,10 @@ impl Stiffness for SparseStiffness {
 
     fn stiffest_compliance(&self, jump: &JumpOperator, rows: &[usize]) -> f64 {
         let of_row = |&i: &usize| {
-            let own = jump.row(i).filter(|e| e.1 != 0.0);
-            own.fold((0.0, 0.0), |(square, stiffest): (f64, f64), (j, b)| {
-                (square + b * b, stiffest.max(self.k.diagonal(j)))
-            })
+            jump.touched(i)
+                .fold((0.0, 0.0), |(square, stiffest): (f64, f64), (j, b)| {
+                    (square + b * b, stiffest.max(self.k.diagonal(j)))
+                })
         };
         let rows = rows.iter().map(of_row);
         rows.map(|(square, stiffest)| ratio(square, stiffest)).sum()

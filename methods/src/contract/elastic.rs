@@ -245,7 +245,7 @@ impl Elastic {
         let (Analysis { ordering, tree, .. }, analysis_s) = self.stiffness.plan()?;
         let rows = self.rows().source;
         let touched = |&i: &usize| -> Vec<usize> {
-            let own = self.jump.row(i).filter(|e| e.1 != 0.0);
+            let own = self.jump.touched(i);
             own.map(|e| ordering.inverse[e.0]).collect()
         };
         let touched: Vec<_> = rows.iter().map(touched).collect();
@@ -439,8 +439,8 @@ fn condensed_rows(dim: usize, points: usize, frictionless: &[bool]) -> RowSet {
 fn in_contact(jump: &JumpOperator, dim: usize, frictionless: &[bool]) -> Vec<bool> {
     let mut moved = vec![false; jump.cols()];
     let rows = condensed_rows(dim, jump.rows() / dim, frictionless);
-    let entries = rows.source.iter().flat_map(|&i| jump.row(i));
-    (entries.filter(|(_, b)| *b != 0.0)).for_each(|(j, _)| moved[j] = true);
+    let entries = rows.source.iter().flat_map(|&i| jump.touched(i));
+    entries.for_each(|(j, _)| moved[j] = true);
     moved
 }
 

@@ -9,7 +9,8 @@ use crate::geometry::{Point, Points};
 /// Points at once: a few registers full.
 pub const LANES: usize = 8;
 
-/// Works on points (ξ, x, K weights) of one region, [`LANES`] at a time; the last are filled up with weights of 0.
+/// Works on points (ξ, x, K weights) of one region, [`LANES`] at a time; the last are filled up with weights of 0. Where `work` and
+/// what it calls are not inlined, they go without vectors.
 pub fn in_lanes<const K: usize>(
     points: impl IntoIterator<Item = (Point, Point, [f64; K])>,
     work: impl FnMut(&Points<LANES>, &Points<LANES>, &[[f64; LANES]; K]),
