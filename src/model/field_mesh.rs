@@ -114,9 +114,14 @@ fn body_picture(body: &Body, now: &Snapshot) -> FieldMesh {
     for cell in 0..mesh.cell_count() {
         let map = mesh.map(cell);
         let Some(partition) = body.enrichment.partition(cell) else {
+            let points = if vertices.near_cell(cell).is_empty() {
+                mesh.cell(cell).iter().map(|&node| node as usize).collect()
+            } else {
+                map.iter().map(|x| vertices.of(cell, x, 0, now)).collect()
+            };
             cells.push(FieldCell {
                 shape: whole,
-                points: map.iter().map(|x| vertices.of(cell, x, 0, now)).collect(),
+                points,
             });
             taken.push((cell, 0, [0.0; 3]));
             sides.push(0.0);

@@ -17,10 +17,13 @@ use crate::studies::rows::RunKey;
 /// # Errors
 /// Those of the parts; [`FolderError::Duplicate`](crate::files::bundle::FolderError::Duplicate) where two runs give the same file name.
 pub fn bundle(results: &Results, provenance: &Provenance) -> Result<Bundle, ReportError> {
-    let mut bundle = Bundle::new();
-    add_tables(&mut bundle, results)?;
-    add_figures(&mut bundle, results)?;
-    add_fields(&mut bundle, results, provenance)?;
+    let (mut bundle, mut fields) = (Bundle::new(), Bundle::new());
+    let (pictures, files) = rayon::join(
+        || add_tables(&mut bundle, results).and_then(|()| add_figures(&mut bundle, results)),
+        || add_fields(&mut fields, results, provenance),
+    );
+    pictures.and(files)?;
+    bundle.append(fields)?;
     super::add_provenance(&mut bundle, provenance)?;
     Ok(bundle)
 }

@@ -9,11 +9,12 @@ use super::canvas::{Anchor, Canvas, LABEL_PT, Pixel, SMALL_PT};
 use super::colour::{BLACK, Rgb};
 use super::style;
 use crate::report::number::significant;
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A triangle in pixels with the field at its corners, all of a field in the same sense of rotation: rounding to pixels may
-/// flatten one, and its edges still cancel those of its neighbours.
-pub type Triangle = [(Pixel, f64); 3];
+/// A corner in pixels with the field there: rounding to pixels may flatten a face, and its edges still cancel those of its
+/// neighbours.
+pub type Corner = (Pixel, f64);
 
 /// About how many bands a field gets.
 const BANDS: f64 = 10.0;
@@ -74,53 +75,63 @@ fn level_step(raw: f64) -> f64 {
         * power
 }
 
-/// Fills the triangles with the bands of `levels` and draws the contour lines.
-pub fn fill(canvas: &mut Canvas, triangles: &[Triangle], levels: &Levels, line_mm: f64) {
-    let mut lines = Vec::new();
-    for (band, mut above) in regions(triangles, levels).into_iter().enumerate() {
-        let loops = above.loops();
-        canvas.fill_region(&loops, levels.colour(band));
-        lines.extend(loops);
+/// Closed outlines of what lies above every level, the first of which is below all.
+pub type Bands = Vec<Vec<Vec<Pixel>>>;
+
+/// The bands of some faces, all in the same sense of rotation; `corner`: the pixel of a point with the field there.
+pub fn bands(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Levels) -> Bands {
+    let regions = regions(faces, corner, levels).into_par_iter();
+    regions.map(|mut above| above.loops()).collect()
+}
+
+/// Fills bands and draws the contour lines.
+pub fn fill(canvas: &mut Canvas, bands: &Bands, levels: &Levels, line_mm: f64) {
+    for (band, loops) in bands.iter().enumerate() {
+        canvas.fill_region(loops, levels.colour(band));
     }
-    for mut line in lines {
+    for mut line in bands.iter().flatten().cloned() {
         line.extend(line.first().copied());
         canvas.pixel_line(line, BLACK, line_mm);
     }
 }
 
-/// Edges of the last triangles, among which those of a face of four meet.
-const RECENT: usize = 8;
-
-/// What lies above every level, the first of which is below all: of most triangles no edge is left, since their neighbours lie
-/// above the same levels.
-fn regions(triangles: &[Triangle], levels: &Levels) -> Vec<Region> {
+/// What lies above every level, the first of which is below all: of most faces no edge is left, since their neighbours lie above
+/// the same levels.
+fn regions(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Levels) -> Vec<Region> {
     let lowest = std::iter::once(f64::NEG_INFINITY);
     let levels: Vec<f64> = lowest.chain(levels.inner.iter().copied()).collect();
     let mut regions: Vec<Region> = levels.iter().map(|_| Region::default()).collect();
-    // Edges of triangles with the number of levels that all of the triangle is above.
-    let mut whole = Vec::with_capacity(3 * triangles.len());
-    for triangle in triangles {
-        let is_above = |level: &&f64| triangle.iter().all(|corner| corner.1 >= **level);
-        let above = levels.iter().take_while(is_above).count();
-        let corners = triangle.map(|(pixel, _)| pixel);
-        for (edge, sign) in Region::edges(&corners) {
-            // Most are shared with the triangle before.
-            let recent = whole.len().saturating_sub(RECENT);
-            let back = (edge, -sign, above);
-            match whole[recent..].iter().position(|own| *own == back) {
-                Some(place) => drop(whole.swap_remove(recent + place)),
-                None => whole.push((edge, sign, above)),
+    // Edges with the number of levels that all of what they bound is above.
+    let mut whole = Vec::new();
+    let mut pixels: Vec<Pixel> = Vec::new();
+    let mut add = |part: &[Corner]| {
+        let above = levels.iter().take_while(|level| is_above(part, **level));
+        let above = above.count();
+        pixels.clear();
+        pixels.extend(part.iter().map(|corner| corner.0));
+        whole.extend(Region::edges(&pixels).map(|(edge, sign)| (edge, sign, above)));
+    };
+    let mut corners = Vec::new();
+    for face in faces {
+        corners.clear();
+        corners.extend(face.iter().map(|point| corner(*point)));
+        let is_cut =
+            |level: &f64| corners.iter().any(|c| c.1 >= *level) && !is_above(&corners, *level);
+        if !levels.iter().any(is_cut) {
+            add(&corners);
+            continue;
+        }
+        for triangle in split(&corners) {
+            add(&triangle);
+            for (region, level) in regions.iter_mut().zip(&levels) {
+                if !is_above(&triangle, *level) {
+                    let part = part_above(&triangle, *level);
+                    region.edges.extend(Region::edges(&part));
+                }
             }
         }
-        let is_cut = |level: &f64| triangle.iter().any(|corner| corner.1 >= *level);
-        let cut = levels[above..].iter().take_while(|level| is_cut(level));
-        for (region, level) in regions[above..].iter_mut().zip(cut) {
-            region
-                .edges
-                .extend(Region::edges(&part_above(triangle, *level)));
-        }
     }
-    whole.sort_unstable();
+    whole.par_sort_unstable();
     for equal in whole.chunk_by(|a, b| a.0 == b.0) {
         let most = equal.iter().map(|own| own.2).max().unwrap_or(0);
         for (band, region) in regions.iter_mut().enumerate().take(most) {
@@ -182,8 +193,28 @@ pub fn colour_bar(
     canvas.text(label, [x, top - 3.0], LABEL_PT, Anchor::Start, BLACK);
 }
 
+/// Whether the field is at least the level at all corners.
+fn is_above(corners: &[Corner], level: f64) -> bool {
+    corners.iter().all(|corner| corner.1 >= level)
+}
+
+/// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).
+fn split(corners: &[Corner]) -> Vec<[Corner; 3]> {
+    if let [a, b, c] = *corners {
+        return vec![[a, b, c]];
+    }
+    let n = corners.len() as f64;
+    let mean = |c: usize| corners.iter().map(|(p, _)| f64::from(p[c])).sum::<f64>() / n;
+    let value = corners.iter().map(|(_, v)| v).sum::<f64>() / n;
+    let middle = ([mean(0).round() as i32, mean(1).round() as i32], value);
+    let next = corners.iter().cycle().skip(1);
+    (corners.iter().zip(next))
+        .map(|(a, b)| [*a, *b, middle])
+        .collect()
+}
+
 /// The part of a triangle where the field is at least the level.
-fn part_above(triangle: &Triangle, level: f64) -> Vec<Pixel> {
+fn part_above(triangle: &[Corner; 3], level: f64) -> Vec<Pixel> {
     let mut polygon = Vec::with_capacity(4);
     for index in 0..3 {
         let (a, b) = (triangle[index], triangle[(index + 1) % 3]);
@@ -334,7 +365,7 @@ fn walk(links: &mut BTreeMap<Pixel, BTreeSet<Pixel>>, start: Pixel) -> Vec<Pixel
 mod tests {
     use super::*;
 
-    fn square_of_triangles() -> Vec<Triangle> {
+    fn square_of_triangles() -> Vec<[Corner; 3]> {
         let corner = |x: i32, y: i32| ([x * 100, y * 100], f64::from(x));
         vec![
             [corner(0, 0), corner(1, 0), corner(1, 1)],

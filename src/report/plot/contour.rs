@@ -1,7 +1,7 @@
 //! Displacement of a plane body as bands on its deformed shape: u_x and u_y side by side, one above the other for flat bodies.
 
 use super::axis::{Axis, prefixed, range};
-use super::bands::{self, Levels, Triangle};
+use super::bands::{self, Bands, Levels};
 use super::canvas::*;
 use super::colour::{BLACK, MIDDLE};
 use super::contact::States;
@@ -12,6 +12,7 @@ use super::series::Panel;
 use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh, FieldStep};
 use crate::report::ReportError;
 use crate::report::number::significant;
+use rayon::prelude::*;
 use stickslip_xfem::geometry::polygon;
 
 /// Least and greatest height of a colour bar, and room right of a body for it [mm].
@@ -95,7 +96,7 @@ fn contours(
     let (moved, factor) = deformed(picture)?;
     let places = [&picture.points, &moved];
     let places = places.map(|points| points.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>());
-    let mut faces = conforming(picture, &faces(picture, &places[1])?);
+    let mut faces = conforming(picture, faces(picture, &places[1])?);
     for face in &mut faces {
         let corners: Vec<[f64; 3]> = face.iter().map(|p| moved[*p]).collect();
         if polygon::area(&corners) < 0.0 {
@@ -138,7 +139,7 @@ fn contours(
     let mut canvas = Canvas::new(PAGE, drawn + legend);
     head.draw(&mut canvas);
     states.legend(&mut canvas, [left, drawn + 1.0], false);
-    for (index, field) in fields.iter().enumerate() {
+    let panels = fields.par_iter().enumerate().map(|(index, field)| {
         let [right, down] = if stacked { [0.0, height] } else { [share, 0.0] };
         let left = left + index as f64 * right;
         let bottom = head.height() + height - BELOW + index as f64 * down;
@@ -146,10 +147,14 @@ fn contours(
             x: [left, left + size[0]],
             y: [bottom - size[1], bottom],
         };
+        let bands = body.bands(field, |p| pixel(place.at(&panel, p)));
+        (field, place, bands)
+    });
+    for (field, place, bands) in panels.collect::<Vec<_>>() {
         draw_panel(&mut canvas, &panel, &[], &place);
         draw_labels(&mut canvas, &panel, &place, [true, true]);
-        body.draw(&mut canvas, field, |p| pixel(place.at(&panel, p)));
-        let bar = [place.x[1] + 3.0, bottom];
+        body.draw(&mut canvas, (field, &bands), |p| pixel(place.at(&panel, p)));
+        let bar = [place.x[1] + 3.0, place.y[1]];
         let height = size[1].clamp(BAR_MM[0], BAR_MM[1]);
         bands::colour_bar(&mut canvas, &field.levels, bar, height, &field.label);
     }
@@ -157,14 +162,23 @@ fn contours(
 }
 
 impl Body<'_> {
-    /// Bands of a field between the undeformed and the deformed outline.
-    fn draw(&self, canvas: &mut Canvas, field: &Field, paper: impl Fn([f64; 2]) -> Pixel) {
+    /// Bands of a field on the deformed shape.
+    fn bands(&self, field: &Field, paper: impl Fn([f64; 2]) -> Pixel) -> Bands {
+        let pixels: Vec<Pixel> = self.places[1].iter().map(|x| paper(*x)).collect();
+        let corner = |p: usize| (pixels[p], field.values[p]);
+        bands::bands(&self.faces, corner, &field.levels)
+    }
+
+    /// They, between the undeformed and the deformed outline.
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        (field, bands): (&Field, &Bands),
+        paper: impl Fn([f64; 2]) -> Pixel,
+    ) {
         let place = |which: usize, point: usize| paper(self.places[which][point]);
         stroke(canvas, &self.outline, |p| place(0, p), MIDDLE, 0.2);
-        let corner = |p: usize| (place(1, p), field.values[p]);
-        let triangles = self.faces.iter().flat_map(|face| split(face, corner));
-        let triangles: Vec<Triangle> = triangles.collect();
-        bands::fill(canvas, &triangles, &field.levels, 0.05);
+        bands::fill(canvas, bands, &field.levels, 0.05);
         stroke(canvas, &self.outline, |p| place(1, p), BLACK, 0.2);
         self.draw_states(canvas, paper);
     }
@@ -221,22 +235,4 @@ fn faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Vec<usize>>, Re
     } else {
         Ok(faces)
     }
-}
-
-/// A face as triangles: itself, or a fan around its middle, where the field is the mean (for a bilinear quad exactly so).
-fn split(face: &[usize], corner: impl Fn(usize) -> (Pixel, f64)) -> Vec<Triangle> {
-    let corners: Vec<(Pixel, f64)> = face.iter().map(|p| corner(*p)).collect();
-    if let [a, b, c] = corners[..] {
-        return vec![[a, b, c]];
-    }
-    let n = corners.len() as f64;
-    let mean = |c: usize| corners.iter().map(|(p, _)| f64::from(p[c])).sum::<f64>() / n;
-    let value = corners.iter().map(|(_, v)| v).sum::<f64>() / n;
-    let middle = ([mean(0).round() as i32, mean(1).round() as i32], value);
-    let next = corners.iter().cycle().skip(1);
-    corners
-        .iter()
-        .zip(next)
-        .map(|(a, b)| [*a, *b, middle])
-        .collect()
 }

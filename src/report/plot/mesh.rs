@@ -63,11 +63,24 @@ pub fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 2]> {
 
 /// Edges of exactly one of the faces.
 pub fn outline(faces: &[Vec<usize>]) -> BTreeSet<[usize; 2]> {
-    let edges = faces.iter().flat_map(|face| sides(face)).map(undirected);
-    let mut edges: Vec<[usize; 2]> = edges.collect();
-    edges.sort_unstable();
-    let single = edges.chunk_by(|a, b| a == b).filter(|own| own.len() == 1);
-    single.map(|own| own[0]).collect()
+    let edges = || faces.iter().flat_map(|face| sides(face)).map(undirected);
+    // Their larger ends by the smaller one.
+    let mut begin = vec![0; faces.iter().flatten().max().map_or(1, |p| p + 2)];
+    edges().for_each(|[a, _]| begin[a + 1] += 1);
+    (1..begin.len()).for_each(|p| begin[p] += begin[p - 1]);
+    let (mut ends, mut at) = (vec![0; begin[begin.len() - 1]], begin.clone());
+    for [a, b] in edges() {
+        ends[at[a]] = b;
+        at[a] += 1;
+    }
+    let mut single = BTreeSet::new();
+    for (a, range) in begin.windows(2).enumerate() {
+        let own = &mut ends[range[0]..range[1]];
+        own.sort_unstable();
+        let alone = own.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
+        single.extend(alone.map(|b| [a, b[0]]));
+    }
+    single
 }
 
 fn undirected([a, b]: [usize; 2]) -> [usize; 2] {
@@ -77,8 +90,8 @@ fn undirected([a, b]: [usize; 2]) -> [usize; 2] {
 /// The faces with every point between the ends of a side that splits the other side of the same line: beside the tip of a
 /// crack, where its continuation parts a cell, and where cracks cross. Otherwise a side inside the body would count as its
 /// boundary, and the faces would gape where such a point moves off the line.
-pub fn conforming(picture: &FieldMesh, faces: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    let single = Single::new(picture, &outline(faces));
+pub fn conforming(picture: &FieldMesh, mut faces: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    let single = Single::new(picture, &outline(&faces));
     // From its smaller to its larger point.
     let mut between: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
     for [one, other] in single.seams() {
@@ -103,8 +116,14 @@ pub fn conforming(picture: &FieldMesh, faces: &[Vec<usize>]) -> Vec<Vec<usize>> 
         }
         std::iter::once(a).chain(inner)
     };
-    let whole = |face: &Vec<usize>| sides(face).flat_map(split).collect();
-    faces.iter().map(whole).collect()
+    let mut met = vec![false; picture.points.len()];
+    between.keys().flatten().for_each(|p| met[*p] = true);
+    for face in &mut faces {
+        if face.iter().any(|p| met[*p]) {
+            *face = sides(face).flat_map(split).collect();
+        }
+    }
+    faces
 }
 
 /// Cosine of the largest angle between edges on one line, and relative distance of places that are the same, less than 1.
@@ -310,7 +329,7 @@ mod tests {
             .chain(below.into_iter().rev())
             .chain([5]);
         let upper = [3, 4, 5].into_iter().chain(above).chain([2]);
-        let faces = conforming(&picture, &[lower.collect(), upper.collect()]);
+        let faces = conforming(&picture, vec![lower.collect(), upper.collect()]);
         let on_line = |edge: &[usize; 2]| {
             let [a, b] = edge.map(|p| picture.points[p]);
             a[1] == 1.0 && b[1] == 1.0 && a != b
