@@ -8,6 +8,7 @@ pub(crate) mod floating;
 pub(crate) mod gmres;
 pub(crate) mod loads;
 pub mod matrix;
+pub mod memory;
 pub(crate) mod multifrontal;
 pub(crate) mod plain;
 pub(crate) mod rows;

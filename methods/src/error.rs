@@ -95,12 +95,17 @@ pub enum MethodError {
     #[error("the contact forces move no contact point: the jump operator is zero")]
     RigidContact,
     /// The Delassus operator would not fit.
-    #[error("{rows} contact rows: the dense Delassus operator is limited to {limit} rows")]
+    #[error(
+        "{rows} contact rows: the Delassus operator and a tangent take {needed_gb:.1} GB, {free_gb:.1} of this machine's memory \
+         are left; methods with monolithic=1 form neither"
+    )]
     TooManyRows {
         /// Contact rows.
         rows: usize,
-        /// Limit.
-        limit: usize,
+        /// Memory for W and a full matrix of its size.
+        needed_gb: f64,
+        /// Memory of the machine that this process does not hold yet.
+        free_gb: f64,
     },
     /// A factorisation, or its solve, was denied memory.
     #[error("{what} failed: out of memory")]

@@ -86,8 +86,9 @@ pub mod newton;
 pub mod own_laws;
 pub mod splitting;
 
-pub use algebra::delassus::{Delassus, MAX_CONDENSED_ROWS, check_rows};
+pub use algebra::delassus::{Delassus, check_rows};
 pub use algebra::matrix::{JumpOperator, SquareMatrix};
+pub use algebra::memory::machine_gb;
 pub use algebra::rows::RowSet;
 pub use condensed::*;
 pub use contract::*;

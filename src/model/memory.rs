@@ -8,6 +8,7 @@
 //! are those of bodies with little contact, so that what fits is never refused: a plane through all of a solid takes up to
 //! two thirds more.
 
+use stickslip_methods::machine_gb;
 use stickslip_xfem::mesh::box_mesh::GridSpec;
 
 use crate::case::{Case, CaseError};
@@ -23,16 +24,6 @@ fn predicted_gb(dim: usize, cells: f64) -> f64 {
         _ => cells.powf(4.0 / 3.0),
     };
     1e-9 * (by_cell * cells + by_entry * entries)
-}
-
-/// Memory of this machine, or what the system grants this process of it [GB]; none where it does not tell (outside Linux).
-pub fn machine_gb() -> Option<f64> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
-    let about = read("/proc/meminfo")?;
-    let line = about.lines().find_map(|l| l.strip_prefix("MemTotal:"))?;
-    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    let granted = read("/sys/fs/cgroup/memory.max").and_then(|text| text.trim().parse().ok());
-    Some(1e-9 * (1024.0 * kilobytes).min(granted.unwrap_or(f64::INFINITY)))
 }
 
 /// Refuses a mesh that does not fit this machine, with the number of cells that does.

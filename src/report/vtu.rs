@@ -5,7 +5,7 @@
 //! comment, the time in a numeric `TimeValue`. Format: VTK file formats, <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
 
 use super::{Bundle, ReportError};
-use crate::model::field_mesh::{CellShape, FieldMesh};
+use crate::model::field_mesh::{CellShape, FieldCell, FieldMesh};
 use crate::studies::rows::RunFields;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -32,13 +32,7 @@ pub fn vtu(picture: &FieldMesh, time: f64, comment: &str) -> Result<Vec<u8>, Rep
     xml += "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
             header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
     xml += "<FieldData>\n";
-    data_array(
-        &mut xml,
-        "Float64",
-        "TimeValue",
-        "NumberOfTuples=\"1\"",
-        &f64_bytes([time]),
-    )?;
+    floats(&mut xml, "TimeValue", "NumberOfTuples=\"1\"", [time])?;
     xml += "</FieldData>\n";
     let _ = writeln!(
         xml,
@@ -47,45 +41,21 @@ pub fn vtu(picture: &FieldMesh, time: f64, comment: &str) -> Result<Vec<u8>, Rep
         picture.cells.len()
     );
 
+    const VECTOR: &str = "NumberOfComponents=\"3\"";
     xml += "<PointData>\n";
     for (name, values) in &picture.point_vectors {
-        let bytes = f64_bytes(values.iter().flatten().copied());
-        data_array(
-            &mut xml,
-            "Float64",
-            name,
-            "NumberOfComponents=\"3\"",
-            &bytes,
-        )?;
+        floats(&mut xml, name, VECTOR, values.iter().flatten().copied())?;
     }
     for (name, values) in &picture.point_scalars {
-        data_array(
-            &mut xml,
-            "Float64",
-            name,
-            "",
-            &f64_bytes(values.iter().copied()),
-        )?;
+        floats(&mut xml, name, "", values.iter().copied())?;
     }
     xml += "</PointData>\n<CellData>\n";
     for (name, values) in &picture.cell_scalars {
-        data_array(
-            &mut xml,
-            "Float64",
-            name,
-            "",
-            &f64_bytes(values.iter().copied()),
-        )?;
+        floats(&mut xml, name, "", values.iter().copied())?;
     }
     xml += "</CellData>\n<Points>\n";
-    let coordinates = f64_bytes(picture.points.iter().flatten().copied());
-    data_array(
-        &mut xml,
-        "Float64",
-        "Points",
-        "NumberOfComponents=\"3\"",
-        &coordinates,
-    )?;
+    let coordinates = picture.points.iter().flatten().copied();
+    floats(&mut xml, "Points", VECTOR, coordinates)?;
 
     xml += "</Points>\n<Cells>\n";
     let connectivity = i64_bytes(picture.cells.iter().flat_map(|cell| &cell.points).copied());
@@ -94,11 +64,7 @@ pub fn vtu(picture: &FieldMesh, time: f64, comment: &str) -> Result<Vec<u8>, Rep
         end += cell.points.len();
         end
     }));
-    let types: Vec<u8> = picture
-        .cells
-        .iter()
-        .map(|cell| vtk_type(cell.shape))
-        .collect();
+    let types: Vec<u8> = picture.cells.iter().map(|c| vtk(c.shape).0).collect();
     data_array(&mut xml, "Int64", "connectivity", "", &connectivity)?;
     data_array(&mut xml, "Int64", "offsets", "", &offsets)?;
     data_array(&mut xml, "UInt8", "types", "", &types)?;
@@ -195,12 +161,9 @@ fn check(picture: &FieldMesh) -> Result<(), ReportError> {
     for (index, cell) in picture.cells.iter().enumerate() {
         let reason = match cell.points.iter().find(|p| **p >= points) {
             Some(point) => format!("cell {index} names point {point} of {points}"),
-            None if !fits(cell.shape, cell.points.len()) => {
-                format!(
-                    "cell {index} is a {:?} of {} points",
-                    cell.shape,
-                    cell.points.len()
-                )
+            None if !fits(cell) => {
+                let (shape, points) = (cell.shape, cell.points.len());
+                format!("cell {index} is a {shape:?} of {points} points")
             }
             None => continue,
         };
@@ -212,27 +175,32 @@ fn check(picture: &FieldMesh) -> Result<(), ReportError> {
     Ok(())
 }
 
-fn fits(shape: CellShape, points: usize) -> bool {
+fn fits(cell: &FieldCell) -> bool {
+    let points = cell.points.len();
+    vtk(cell.shape).1.map_or(points >= 3, |own| points == own)
+}
+
+/// Number of a shape in VTK, and of its points; none: three or more.
+fn vtk(shape: CellShape) -> (u8, Option<usize>) {
     match shape {
-        CellShape::Vertex => points == 1,
-        CellShape::Line => points == 2,
-        CellShape::Triangle => points == 3,
-        CellShape::Polygon => points >= 3,
-        CellShape::Quad | CellShape::Tetra => points == 4,
-        CellShape::Hexahedron => points == 8,
+        CellShape::Vertex => (1, Some(1)),
+        CellShape::Line => (3, Some(2)),
+        CellShape::Triangle => (5, Some(3)),
+        CellShape::Polygon => (7, None),
+        CellShape::Quad => (9, Some(4)),
+        CellShape::Tetra => (10, Some(4)),
+        CellShape::Hexahedron => (12, Some(8)),
     }
 }
 
-fn vtk_type(shape: CellShape) -> u8 {
-    match shape {
-        CellShape::Vertex => 1,
-        CellShape::Line => 3,
-        CellShape::Triangle => 5,
-        CellShape::Polygon => 7,
-        CellShape::Quad => 9,
-        CellShape::Tetra => 10,
-        CellShape::Hexahedron => 12,
-    }
+fn floats(
+    xml: &mut String,
+    name: &str,
+    more: &str,
+    values: impl IntoIterator<Item = f64>,
+) -> Result<(), ReportError> {
+    let bytes: Vec<u8> = values.into_iter().flat_map(f64::to_le_bytes).collect();
+    data_array(xml, "Float64", name, more, &bytes)
 }
 
 fn data_array(
@@ -272,10 +240,6 @@ fn encode(bytes: &[u8]) -> std::io::Result<String> {
     let header: Vec<u8> = header.into_iter().flat_map(u64::to_le_bytes).collect();
     // Header and body are two base64 texts, each padded on its own.
     Ok(STANDARD.encode(header) + &STANDARD.encode(body))
-}
-
-fn f64_bytes(values: impl IntoIterator<Item = f64>) -> Vec<u8> {
-    values.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
 fn i64_bytes(values: impl IntoIterator<Item = usize>) -> Vec<u8> {

@@ -4,17 +4,18 @@
 //! ```
 //! A floating body has a generalised inverse G for K⁻¹, and balanced rows: those of B P (`floating::Balance`).
 
-use faer::Mat;
+use faer::{Mat, MatMut};
 
 use crate::algebra::delassus::check_rows;
 use crate::algebra::factor::Factor;
 use crate::algebra::matrix::JumpOperator;
 use crate::algebra::multifrontal::{Columns, Shared};
-use crate::algebra::strips::{STRIP, column_strips, for_all, permute_rows};
+use crate::algebra::plain::Full;
+use crate::algebra::strips::{STRIP, column_strips, for_all};
 use crate::error::MethodError;
 
 /// W and its diagonal.
-pub(crate) type Condensed = (Mat<f64>, Vec<f64>);
+pub(crate) type Condensed = (Full, Vec<f64>);
 
 /// W for the listed rows of B, full (both triangles), exactly symmetric, and the squared columns of Y: the diagonal of W
 /// as [`diagonal`] gives it.
@@ -24,40 +25,15 @@ pub(crate) fn condense(
     rows: &[usize],
 ) -> Result<Condensed, MethodError> {
     check_rows(rows.len())?;
-    let (mut w, diagonal, position) = along_tree(factor, jump, rows, true);
-    // Back to the order of `rows`; each pair is read from one triangle, so the result is symmetric to the bit.
-    mirror_upper(&mut w);
-    permute(&mut w, &position);
+    let (mut w, diagonal) = factor.condense(&columns(factor, &[(jump, rows)]), true);
+    // Each pair is read from one triangle, so the result is symmetric to the bit.
+    mirror_upper(w.view_mut());
     Ok((w, diagonal))
 }
 
 /// The diagonal of W for the listed rows of B: W is not formed.
 pub(crate) fn diagonal(factor: &Factor, jump: &JumpOperator, rows: &[usize]) -> Vec<f64> {
-    along_tree(factor, jump, rows, false).1
-}
-
-/// W for the listed rows in another order if it is to be formed, of which the upper triangle counts, its diagonal in theirs, and
-/// where they stand in it. Rows that begin early in L stand first: what a supernode sees stands together then.
-fn along_tree(
-    factor: &Factor,
-    jump: &JumpOperator,
-    rows: &[usize],
-    formed: bool,
-) -> (Mat<f64>, Vec<f64>, Vec<usize>) {
-    let first = |k: usize| {
-        let own = jump.touched(rows[k]);
-        own.map(|e| factor.ordering.inverse[e.0]).min()
-    };
-    let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by_cached_key(|&k| (first(k), k));
-    let sorted: Vec<usize> = order.iter().map(|&k| rows[k]).collect();
-    let (w, squares) = factor.condense(&columns(factor, &[(jump, &sorted)]), formed);
-    let mut position = vec![0; rows.len()];
-    for (s, &k) in order.iter().enumerate() {
-        position[k] = s;
-    }
-    let diagonal = position.iter().map(|&s| squares[s]).collect();
-    (w, diagonal, position)
+    factor.condense(&columns(factor, &[(jump, rows)]), false).1
 }
 
 /// The traction operator S condensed to some rows: T and X.
@@ -79,54 +55,42 @@ impl Tractions {
         check_rows(rows.len())?;
         let m = rows.len();
         let (square, _) = factor.condense(&columns(factor, &[(b, rows), (s, rows)]), true);
-        let x = square.as_ref().submatrix(0, m, m, m).to_owned();
-        let mut t = square.as_ref().submatrix(m, m, m, m).to_owned();
-        mirror_upper(&mut t);
+        let x = square.view().submatrix(0, m, m, m).to_owned();
+        let mut t = square.view().submatrix(m, m, m, m).to_owned();
+        mirror_upper(t.as_mut());
         Ok(Self { t, x })
     }
 }
 
-/// Lower triangle := upper triangle.
-fn mirror_upper(a: &mut Mat<f64>) {
+/// Lower triangle := upper triangle, by quarters.
+fn mirror_upper(mut a: MatMut<'_, f64>) {
     /// Square blocks that fit a cache.
     const BLOCK: usize = 32;
     let n = a.nrows();
-    for column in (0..n).step_by(BLOCK) {
-        for row in (column..n).step_by(BLOCK) {
-            for j in column..(column + BLOCK).min(n) {
-                for i in row.max(j + 1)..(row + BLOCK).min(n) {
-                    a[(i, j)] = a[(j, i)];
+    if n <= BLOCK {
+        for j in 0..n {
+            (0..j).for_each(|i| a[(j, i)] = a[(i, j)]);
+        }
+        return;
+    }
+    let half = (n / 2).next_multiple_of(BLOCK);
+    let (first, upper, lower, last) = a.split_at_mut(half, half);
+    let (upper, threads) = (upper.as_ref(), n > STRIP);
+    for_all(
+        column_strips(lower, BLOCK),
+        threads,
+        |(begin, mut strip)| {
+            for row in (0..strip.nrows()).step_by(BLOCK) {
+                for j in 0..strip.ncols() {
+                    for i in row..(row + BLOCK).min(strip.nrows()) {
+                        strip[(i, j)] = upper[(begin + j, i)];
+                    }
                 }
             }
-        }
-    }
-}
-
-/// Row and column k := row and column `position[k]`.
-fn permute(a: &mut Mat<f64>, position: &[usize]) {
-    let threads = a.nrows() > STRIP;
-    for_all(column_strips(a.as_mut(), STRIP), threads, |(_, strip)| {
-        permute_rows(strip, position);
-    });
-    let mut done = vec![false; position.len()];
-    let mut next = vec![0.0; position.len()];
-    for start in 0..position.len() {
-        if done[start] {
-            continue;
-        }
-        // Along a cycle; its first column is the last to be read.
-        let first = a.col_as_slice(start).to_vec();
-        let mut column = start;
-        while !done[column] {
-            done[column] = true;
-            match position[column] {
-                from if from == start => next.copy_from_slice(&first),
-                from => next.copy_from_slice(a.col_as_slice(from)),
-            }
-            a.col_as_slice_mut(column).copy_from_slice(&next);
-            column = position[column];
-        }
-    }
+        },
+    );
+    mirror_upper(first);
+    mirror_upper(last);
 }
 
 /// (D B)ᵀ for the listed rows of operators B; of a floating body with the part of its balance that each takes.
@@ -164,7 +128,6 @@ fn columns(factor: &Factor, b: &[(&JumpOperator, &[usize])]) -> Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::delassus::MAX_CONDENSED_ROWS;
     use crate::algebra::matrix::SquareMatrix;
     use crate::contract::elastic::{Elastic, ElasticParts};
 
@@ -241,7 +204,8 @@ mod tests {
 
     #[test]
     fn too_many_rows_are_refused_before_memory_is_asked_for() {
-        let n = MAX_CONDENSED_ROWS + 2;
+        let machine = crate::algebra::memory::machine_gb().unwrap_or(6.4);
+        let n = 2 * (1e9 * machine / 64.0).sqrt().ceil() as usize + 2;
         let unit = |n: usize| (0..=n).collect::<Vec<_>>();
         let body = Elastic::new(ElasticParts {
             dim: 2,
@@ -255,7 +219,6 @@ mod tests {
         })
         .unwrap();
         let error = body.condensed().err().unwrap();
-        let limit = MAX_CONDENSED_ROWS;
-        assert_eq!(error, MethodError::TooManyRows { rows: n, limit });
+        assert!(matches!(error, MethodError::TooManyRows { rows, .. } if rows == n));
     }
 }

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use crate::algebra::dense::{dot, mul_add, norm, refill};
+use crate::algebra::dense::{add_columns, dot, mul_add, norm, refill};
 use crate::algebra::matrix::SquareMatrix;
+use crate::algebra::memory;
+use crate::algebra::plain::Full;
 use crate::algebra::sparse::Sparse;
+use crate::algebra::strips::WORTH_MOVING;
 use crate::error::MethodError;
-
-/// Largest number of contact rows condensed: W then takes 8 n² bytes, 3.2 GB.
-pub const MAX_CONDENSED_ROWS: usize = 20_000;
 
 /// The Delassus operator on the contact rows in use, in m/N (2D: m²/N): symmetric positive semi-definite where it comes from
 /// a stiffness, whatever it is where it was given. How it is held is the business of the implementation alone.
@@ -45,12 +45,12 @@ pub trait Delassus: Send + Sync {
     /// # Errors
     /// None that an operator that exists could cause.
     fn select(&self, at: &[usize]) -> Result<Arc<dyn Delassus>, MethodError> {
-        let (mut block, mut work) = (Mat::zeros(at.len(), at.len()), Vec::new());
-        for (j, &from) in at.iter().enumerate() {
-            let column = self.column(from, &mut work);
-            let entries = block.col_as_slice_mut(j).iter_mut().zip(at);
-            entries.for_each(|(entry, &i)| *entry = column[i]);
-        }
+        let mut block = Full::zeros(at.len(), at.len());
+        block.for_columns(at.len() * at.len() > WORTH_MOVING, |j, to| {
+            let mut work = Vec::new();
+            let column = self.column(at[j], &mut work);
+            to.iter_mut().zip(at).for_each(|(to, &i)| *to = column[i]);
+        });
         Ok(Arc::new(Dense::new(block, self.symmetric())))
     }
 
@@ -148,15 +148,16 @@ pub(crate) fn columns_abs_add<W: Delassus + ?Sized>(w: &W, p: &[f64], v: &mut [f
 
 /// W held as a full matrix.
 pub(crate) struct Dense {
-    w: Mat<f64>,
+    w: Full,
     diagonal: Vec<f64>,
     symmetric: bool,
 }
 
 impl Dense {
     /// `symmetric`: whether it is, up to the rounding of whoever computed it.
-    pub fn new(w: Mat<f64>, symmetric: bool) -> Self {
-        let diagonal = (0..w.nrows()).map(|k| w[(k, k)]).collect();
+    pub fn new(w: impl Into<Full>, symmetric: bool) -> Self {
+        let w = w.into();
+        let diagonal = (0..w.rows()).map(|k| w[(k, k)]).collect();
         Self {
             w,
             diagonal,
@@ -167,11 +168,11 @@ impl Dense {
 
 impl Delassus for Dense {
     fn rows(&self) -> usize {
-        self.w.nrows()
+        self.w.rows()
     }
 
     fn apply_add(&self, p: &[f64], v: &mut [f64]) {
-        mul_add(&self.w, p, v);
+        add_columns(|j| self.w.column(j), p, v);
     }
 
     fn diagonal(&self) -> &[f64] {
@@ -179,7 +180,7 @@ impl Delassus for Dense {
     }
 
     fn column<'a>(&'a self, k: usize, _: &'a mut Vec<f64>) -> &'a [f64] {
-        self.w.col_as_slice(k)
+        self.w.column(k)
     }
 
     fn formed(&self) -> bool {
@@ -249,10 +250,10 @@ impl Delassus for Series {
 ///
 /// # Errors
 /// Those of [`check_rows`].
-pub(crate) fn dense(w: &SquareMatrix) -> Result<Mat<f64>, MethodError> {
+pub(crate) fn dense(w: &SquareMatrix) -> Result<Full, MethodError> {
     let m = w.size();
     check_rows(m)?;
-    let mut full = Mat::<f64>::zeros(m, m);
+    let mut full = Full::zeros(m, m);
     for j in 0..m {
         for (i, value) in w.column(j) {
             full[(i, j)] = value;
@@ -264,15 +265,20 @@ pub(crate) fn dense(w: &SquareMatrix) -> Result<Mat<f64>, MethodError> {
     Ok(full)
 }
 
-/// Refuses more rows than a full W has memory for.
+/// Refuses more rows than there is memory left for a full W with a tangent of its size.
 ///
 /// # Errors
 /// [`MethodError::TooManyRows`].
 pub fn check_rows(rows: usize) -> Result<(), MethodError> {
-    if rows > MAX_CONDENSED_ROWS {
+    /// Where the system does not tell: 20 000 rows.
+    const UNKNOWN_GB: f64 = 6.4;
+    let needed_gb = 16e-9 * (rows as f64).powi(2);
+    let free_gb = memory::machine_gb().map_or(UNKNOWN_GB, |all| all - memory::resident_gb());
+    if needed_gb > free_gb {
         return Err(MethodError::TooManyRows {
             rows,
-            limit: MAX_CONDENSED_ROWS,
+            needed_gb,
+            free_gb,
         });
     }
     Ok(())

@@ -29,7 +29,7 @@ impl DenseLu {
     pub fn new(a: &Mat<f64>) -> Option<Self> {
         let mut lu = Self::default();
         let factors = lu.zeros(a.ncols());
-        (0..a.ncols()).for_each(|j| factors.column_mut(j).copy_from_slice(a.col_as_slice(j)));
+        factors.for_columns(false, |j, column| column.copy_from_slice(a.col_as_slice(j)));
         lu.factor().then_some(lu)
     }
 
@@ -44,7 +44,7 @@ impl DenseLu {
 
     /// n × n zeros in place of the factors: to be filled, then [factored](Self::factor).
     pub fn zeros(&mut self, n: usize) -> &mut Full {
-        self.factors.clear(n);
+        self.factors.clear(n, n);
         &mut self.factors
     }
 
@@ -56,7 +56,7 @@ impl DenseLu {
     /// Factors the matrix that stands in place of the factors; false if it is singular to working precision.
     pub fn factor(&mut self) -> bool {
         let (a, rows) = (&mut self.factors, &mut self.rows);
-        let n = a.size();
+        let n = a.rows();
         match n {
             0..=PLAIN => plain::lu(a, rows, &mut self.column),
             _ => *rows = lu(a.view_mut()),
@@ -74,7 +74,7 @@ impl DenseLu {
 
     /// The least pivot, absolutely; infinite without any.
     pub fn least_pivot(&self) -> f64 {
-        let pivots = (0..self.factors.size()).map(|i| self.factors[(i, i)].abs());
+        let pivots = (0..self.factors.rows()).map(|i| self.factors[(i, i)].abs());
         pivots.fold(f64::INFINITY, f64::min)
     }
 
@@ -143,13 +143,19 @@ pub(crate) fn mul_transpose_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
 
 /// y += A x for a full matrix.
 pub(crate) fn mul_add(a: &Mat<f64>, x: &[f64], y: &mut [f64]) {
+    add_columns(|j| a.col_as_slice(j), x, y);
+}
+
+/// y += A x for an A that is given by columns.
+#[inline(always)]
+pub(crate) fn add_columns<'a>(column: impl Fn(usize) -> &'a [f64], x: &[f64], y: &mut [f64]) {
     // Column sweep: columns are contiguous and zero forces of open points cost nothing.
     wide(
         #[inline(always)]
         || {
             for (j, &xj) in x.iter().enumerate() {
                 if xj != 0.0 {
-                    for (y, a) in y.iter_mut().zip(a.col_as_slice(j)) {
+                    for (y, a) in y.iter_mut().zip(column(j)) {
                         *y += a * xj;
                     }
                 }

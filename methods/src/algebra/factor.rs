@@ -6,12 +6,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::Mat;
-
 use crate::algebra::dense::{larger, norm, ratio};
 use crate::algebra::floating::Balance;
 use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::multifrontal::{Analysis, Cholesky, Columns, Ordering};
+use crate::algebra::plain::Full;
 use crate::algebra::strips::Failure;
 use crate::error::MethodError;
 
@@ -173,7 +172,7 @@ impl Factor {
     }
 
     /// Yᵀ Y with L Y = B, if it is to be formed, of which the upper triangle counts, and its diagonal.
-    pub fn condense(&self, b: &Columns, formed: bool) -> (Mat<f64>, Vec<f64>) {
+    pub fn condense(&self, b: &Columns, formed: bool) -> (Full, Vec<f64>) {
         self.cholesky.condense(b, formed)
     }
 }

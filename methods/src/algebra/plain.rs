@@ -2,7 +2,10 @@
 
 use std::ops::{Index, IndexMut};
 
-use faer::{MatMut, MatRef};
+use faer::{Mat, MatMut, MatRef};
+use rayon::prelude::*;
+
+use crate::algebra::strips::WORTH_MOVING;
 
 /// Runs loops with vectors of 256 bits where the machine has them. Products and sums stay operations of their own, in their order: the bits
 /// are the same on every machine.
@@ -14,42 +17,89 @@ pub(crate) fn wide<R>(act: impl FnOnce() -> R) -> R {
 /// Numbers of a vector of 256 bits.
 const LANES: usize = 4;
 
-/// A square matrix, column by column. Columns are followed by zeros up to a whole number of vectors: loops have no rest.
-#[derive(Default)]
+/// A matrix, column by column. Columns are followed by zeros up to a whole number of vectors: loops have no rest.
+#[derive(Default, PartialEq)]
 pub(crate) struct Full {
-    size: usize,
+    rows: usize,
+    columns: usize,
     stride: usize,
     values: Vec<f64>,
 }
 
 impl Full {
-    /// n × n zeros.
-    pub fn clear(&mut self, n: usize) {
-        (self.size, self.stride) = (n, n.next_multiple_of(LANES));
-        self.values.clear();
-        self.values.reserve_exact(n * self.stride);
-        self.values.resize(n * self.stride, 0.0);
+    /// Zeros to add to: written, since a page that is read before is given out twice.
+    pub fn zeros(rows: usize, columns: usize) -> Self {
+        let mut zeros = Self::default();
+        zeros.clear(rows, columns);
+        zeros.for_columns(rows * columns > WORTH_MOVING, |_, column| column.fill(0.0));
+        zeros
     }
 
-    /// Rows and columns.
-    pub fn size(&self) -> usize {
-        self.size
+    /// Zeros in place of what it holds, of which the system keeps no pages until they are written to.
+    pub fn clear(&mut self, rows: usize, columns: usize) {
+        (self.rows, self.columns) = (rows, columns);
+        self.stride = rows.next_multiple_of(LANES);
+        let len = columns * self.stride;
+        self.values.clear();
+        if len <= self.values.capacity() {
+            self.values.resize(len, 0.0);
+        } else {
+            // Freed before others are asked for.
+            self.values = Vec::new();
+            self.values = vec![0.0; len];
+        }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns.
+    pub fn columns(&self) -> usize {
+        self.columns
     }
 
     /// For blocked algorithms.
     pub fn view(&self) -> MatRef<'_, f64> {
-        MatRef::from_column_major_slice_with_stride(&self.values, self.size, self.size, self.stride)
+        let (rows, columns, stride) = (self.rows, self.columns, self.stride);
+        MatRef::from_column_major_slice_with_stride(&self.values, rows, columns, stride)
     }
 
     /// The same, to be changed.
     pub fn view_mut(&mut self) -> MatMut<'_, f64> {
-        let (n, stride) = (self.size, self.stride);
-        MatMut::from_column_major_slice_with_stride_mut(&mut self.values, n, n, stride)
+        let (rows, columns, stride) = (self.rows, self.columns, self.stride);
+        MatMut::from_column_major_slice_with_stride_mut(&mut self.values, rows, columns, stride)
     }
 
     /// Column `j`.
+    pub fn column(&self, j: usize) -> &[f64] {
+        &self.values[j * self.stride..][..self.rows]
+    }
+
+    /// The same, to be changed.
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
-        &mut self.values[j * self.stride..][..self.size]
+        &mut self.values[j * self.stride..][..self.rows]
+    }
+
+    /// Calls `act` with every column and its number, on several threads if that is asked for.
+    pub fn for_columns(&mut self, threads: bool, act: impl Fn(usize, &mut [f64]) + Sync) {
+        let (rows, stride) = (self.rows, self.stride.max(1));
+        if threads {
+            let columns = self.values.par_chunks_exact_mut(stride).enumerate();
+            columns.for_each(|(j, column)| act(j, &mut column[..rows]));
+        } else {
+            let columns = self.values.chunks_exact_mut(stride).enumerate();
+            columns.for_each(|(j, column)| act(j, &mut column[..rows]));
+        }
+    }
+}
+
+impl From<Mat<f64>> for Full {
+    fn from(a: Mat<f64>) -> Self {
+        let mut full = Self::zeros(a.nrows(), a.ncols());
+        full.for_columns(false, |j, column| column.copy_from_slice(a.col_as_slice(j)));
+        full
     }
 }
 
@@ -70,7 +120,7 @@ impl IndexMut<(usize, usize)> for Full {
 /// A := L and U with L U = P A, partial pivoting; row k of P A is row `rows[k]` of A. One column after the other, all later ones
 /// updated at once. `multipliers`: room for a column of L, with zeros above, so that updates begin with a whole vector.
 pub(crate) fn lu(a: &mut Full, rows: &mut Vec<usize>, multipliers: &mut Vec<f64>) {
-    let (n, stride) = (a.size, a.stride);
+    let (n, stride) = (a.rows, a.stride);
     rows.clear();
     rows.extend(0..n);
     multipliers.clear();

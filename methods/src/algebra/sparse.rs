@@ -3,14 +3,15 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use faer::MatMut;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Mat, MatMut};
 
 use crate::algebra::delassus::{Delassus, Dense};
 use crate::algebra::dense::{SINGULAR, larger, refill, zero};
 use crate::algebra::matrix::SquareMatrix;
+use crate::algebra::plain::Full;
 use crate::error::MethodError;
 
 /// Fewest rows of an operator that is held by its entries.
@@ -185,10 +186,10 @@ fn is_sparse(rows: usize, entries: usize) -> bool {
 }
 
 /// A symmetric W that was computed in full: of many bodies that touch here and there most entries are 0.
-pub(crate) fn computed(w: Mat<f64>) -> Result<Arc<dyn Delassus>, MethodError> {
-    let columns = || (0..w.ncols()).map(|j| w.col_as_slice(j));
+pub(crate) fn computed(w: Full) -> Result<Arc<dyn Delassus>, MethodError> {
+    let columns = || (0..w.columns()).map(|j| w.column(j));
     let entries = columns().flatten().filter(|w| **w != 0.0).count();
-    if !is_sparse(w.ncols(), entries) {
+    if !is_sparse(w.columns(), entries) {
         return Ok(Arc::new(Dense::new(w, true)));
     }
     let (mut ends, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -200,7 +201,7 @@ pub(crate) fn computed(w: Mat<f64>) -> Result<Arc<dyn Delassus>, MethodError> {
         }
         ends.push(values.len());
     }
-    held(&SquareMatrix::symmetric(w.ncols(), ends, rows, values)?)
+    held(&SquareMatrix::symmetric(w.columns(), ends, rows, values)?)
 }
 
 /// W as its entries are few or many.
@@ -356,7 +357,7 @@ mod tests {
         agree(&|w| w.select(&at).unwrap().to_matrix().col_as_slice(3).to_vec());
         assert_eq!(sparse.matrix().unwrap(), chain(n, -1.5));
         assert!(sparse.is_definite(0.0) && !sparse.is_definite(-2.0));
-        let again = computed(full.to_matrix()).unwrap();
+        let again = computed(full.to_matrix().into()).unwrap();
         assert_eq!(again.sparse().unwrap().w, sparse.w);
     }
 

@@ -250,8 +250,8 @@ impl DelassusOnly {
         let Ok(mut full) = dense(&self.w) else {
             return false;
         };
-        (0..full.ncols()).for_each(|j| full[(j, j)] += shift);
-        cholesky(full.as_mut()).is_err()
+        (0..full.columns()).for_each(|j| full[(j, j)] += shift);
+        cholesky(full.view_mut()).is_err()
     }
 }
 

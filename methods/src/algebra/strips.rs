@@ -19,6 +19,8 @@ use rayon::prelude::*;
 pub(crate) const STRIP: usize = 192;
 /// Multiplications from which threads are worth it.
 pub(crate) const WORTH_THREADS: f64 = 2e7;
+/// Numbers from which moving them is.
+pub(crate) const WORTH_MOVING: usize = 1 << 18;
 
 /// Why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,7 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, Par};
 
-use crate::algebra::dense::{DenseLu, add, mul_add, refill};
+use crate::algebra::dense::{DenseLu, add, add_columns, refill};
 use crate::algebra::plain::Full;
 
 /// A row d and how it is tied to the one before.
@@ -29,30 +29,21 @@ impl Tie {
 }
 
 /// The factors. The memory of one serves the next.
+#[derive(Default)]
 pub(crate) struct TiedLu {
     /// Of J_KK + J_Kd α.
     lu: DenseLu,
     /// By increasing d.
     pub ties: Vec<Tie>,
     /// J_Kd.
-    across: Mat<f64>,
-}
-
-impl Default for TiedLu {
-    fn default() -> Self {
-        Self {
-            lu: DenseLu::default(),
-            ties: Vec::new(),
-            across: Mat::new(),
-        }
-    }
+    across: Full,
 }
 
 impl TiedLu {
     /// Zeros for J_KK and J_Kd, to be filled, then [factored](Self::factor), of a J of `n` rows with these `ties`.
-    pub fn zeros(&mut self, n: usize) -> (&mut Full, &mut Mat<f64>) {
+    pub fn zeros(&mut self, n: usize) -> (&mut Full, &mut Full) {
         let kept = n - self.ties.len();
-        self.across = Mat::zeros(kept, self.ties.len());
+        self.across.clear(kept, self.ties.len());
         (self.lu.zeros(kept), &mut self.across)
     }
 
@@ -62,14 +53,14 @@ impl TiedLu {
         for (j, tie) in ties.iter().enumerate() {
             // As many tied rows stand before it as ties.
             let column = lu.matrix().column_mut(tie.d - 1 - j);
-            add(tie.alpha, across.col_as_slice(j), column);
+            add(tie.alpha, across.column(j), column);
         }
         lu.factor()
     }
 
     /// Rows and columns of the factors.
     pub fn size(&self) -> usize {
-        self.across.nrows()
+        self.across.rows()
     }
 
     /// K, of n rows.
@@ -92,7 +83,7 @@ impl TiedLu {
         let minus = self.ties.iter().map(|tie| -tie.t(|i| f[i]));
         refill(work, self.kept(f.len()).map(|i| f[i]).chain(minus));
         let (rest, minus) = work.split_at_mut(self.size());
-        mul_add(&self.across, minus, rest);
+        add_columns(|j| self.across.column(j), minus, rest);
         let finite = self.lu.solve_into(rest, x);
         // From the last on, so that nothing is overwritten.
         x.resize(f.len(), 0.0);
@@ -115,7 +106,14 @@ impl TiedLu {
             self.ties[k].t(|i| X[(i, j)])
         });
         let mut rest = Mat::from_fn(kept.len(), X.ncols(), |i, j| X[(kept[i], j)]);
-        matmul(&mut rest, Accum::Add, &self.across, &t, -1.0, Par::Seq);
+        matmul(
+            &mut rest,
+            Accum::Add,
+            self.across.view(),
+            &t,
+            -1.0,
+            Par::Seq,
+        );
         self.lu.solve_in_place(rest.as_mut());
         for j in 0..X.ncols() {
             (kept.iter().enumerate()).for_each(|(i, &to)| X[(to, j)] = rest[(i, j)]);

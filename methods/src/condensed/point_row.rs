@@ -12,6 +12,7 @@ use std::ops::Range;
 use crate::algebra::delassus::Delassus;
 use crate::algebra::plain::Full;
 use crate::algebra::sparse::{Sparse, SparseLu};
+use crate::algebra::strips::WORTH_MOVING;
 use crate::algebra::tied::{Tie, TiedLu};
 use crate::condensed::problem::ContactProblem;
 
@@ -155,20 +156,14 @@ impl Bordered {
         match law {
             Law::Rows { a, c } => {
                 law_points(active, c, &mut self.laws);
-                let (rows, mut work) = ((&active[..], *a, &self.laws[..]), Vec::new());
-                for (j, place) in active.iter().enumerate() {
-                    law_column(
-                        problem,
-                        w,
-                        place,
-                        rows,
-                        &mut work,
-                        &mut J.column_mut(j)[..n],
-                    );
-                }
-                for (j, place) in tied.iter().enumerate() {
-                    let column = &mut across.col_as_slice_mut(j)[..n];
-                    law_column(problem, w, place, rows, &mut work, column);
+                let rows = (&active[..], *a, &self.laws[..]);
+                for (to, places) in [(&mut *J, &active[..]), (&mut *across, &tied)] {
+                    to.for_columns(size * size > WORTH_MOVING, |j, column| {
+                        if let Some(place) = places.get(j) {
+                            let column = &mut column[..n];
+                            law_column(problem, w, place, rows, &mut Vec::new(), column);
+                        }
+                    });
                 }
             }
             Law::Columns { e, s } => columns(J, w, active, e, s),

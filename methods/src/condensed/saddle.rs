@@ -15,6 +15,7 @@ use faer::Mat;
 
 use crate::algebra::delassus::{Delassus, Dense};
 use crate::algebra::dense::dot;
+use crate::algebra::plain::Full;
 use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::operator::ContactOperator;
 use crate::contract::state::{Monitor, Status};
@@ -210,9 +211,11 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
     };
     // Π W Π = W − Q (Qᵀ W) − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
-    let mut augmented = operator.w.to_matrix();
+    let (mut augmented, mut work) = (Full::zeros(m, m), Vec::new());
     for j in 0..m {
-        for (i, entry) in augmented.col_as_slice_mut(j).iter_mut().enumerate() {
+        let column = augmented.column_mut(j);
+        column.copy_from_slice(w.column(j, &mut work));
+        for (i, entry) in column.iter_mut().enumerate() {
             for a in 0..q.len() {
                 *entry += kappa * q[a][i] * q[a][j] - q[a][i] * qw[a][j] - wq[a][i] * q[a][j];
                 for b in 0..q.len() {

@@ -78,12 +78,6 @@ fn level_step(raw: f64) -> f64 {
 /// Closed outlines of what lies above every level, the first of which is below all.
 pub type Bands = Vec<Vec<Vec<Pixel>>>;
 
-/// The bands of some faces, all in the same sense of rotation; `corner`: the pixel of a point with the field there.
-pub fn bands(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Levels) -> Bands {
-    let regions = regions(faces, corner, levels).into_par_iter();
-    regions.map(|mut above| above.loops()).collect()
-}
-
 /// Fills bands and draws the contour lines.
 pub fn fill(canvas: &mut Canvas, bands: &Bands, levels: &Levels, line_mm: f64) {
     for (band, loops) in bands.iter().enumerate() {
@@ -95,9 +89,9 @@ pub fn fill(canvas: &mut Canvas, bands: &Bands, levels: &Levels, line_mm: f64) {
     }
 }
 
-/// What lies above every level, the first of which is below all: of most faces no edge is left, since their neighbours lie above
-/// the same levels.
-fn regions(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Levels) -> Vec<Region> {
+/// The bands of some faces, all in the same sense of rotation: of most no edge is left, since their neighbours lie above the same
+/// levels. `corner`: the pixel of a point with the field there.
+pub fn bands(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Levels) -> Bands {
     let lowest = std::iter::once(f64::NEG_INFINITY);
     let levels: Vec<f64> = lowest.chain(levels.inner.iter().copied()).collect();
     let mut regions: Vec<Region> = levels.iter().map(|_| Region::default()).collect();
@@ -142,7 +136,8 @@ fn regions(faces: &[Vec<usize>], corner: impl Fn(usize) -> Corner, levels: &Leve
             }
         }
     }
-    regions
+    let loops = regions.into_par_iter().map(|mut region| region.loops());
+    loops.collect()
 }
 
 /// A vertical colour bar with its label on top: lower left corner, height, in millimetres.

@@ -88,10 +88,8 @@ fn contours(
 ) -> Result<String, ReportError> {
     let picture = &step.body;
     if picture.dim != 2 {
-        return fail(
-            "picture",
-            &format!("{} dimensions, contours need 2", picture.dim),
-        );
+        let reason = format!("{} dimensions, contours need 2", picture.dim);
+        return fail("picture", &reason);
     }
     let (moved, factor) = deformed(picture)?;
     let places = [&picture.points, &moved];
@@ -220,13 +218,9 @@ fn faces(picture: &FieldMesh, places: &[[f64; 2]]) -> Result<Vec<Vec<usize>>, Re
         let Some(corners) = corners.collect::<Option<Vec<_>>>() else {
             return fail("cells", &format!("a point beyond {}", places.len()));
         };
-        let solid = [
-            CellShape::Vertex,
-            CellShape::Line,
-            CellShape::Tetra,
-            CellShape::Hexahedron,
-        ];
-        if !solid.contains(&cell.shape) && corners.into_iter().flatten().all(|c| c.is_finite()) {
+        use CellShape::{Polygon, Quad, Triangle};
+        let plane = matches!(cell.shape, Triangle | Polygon | Quad);
+        if plane && corners.into_iter().flatten().all(|c| c.is_finite()) {
             faces.push(cell.points.clone());
         }
     }

@@ -15,7 +15,8 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use crate::algebra::dense::add;
 use crate::algebra::multifrontal::Cholesky;
 use crate::algebra::multifrontal::tree::{AssemblyTree, Supernode};
-use crate::algebra::strips::{STRIP, WORTH_THREADS, column_strips, for_all};
+use crate::algebra::plain::Full;
+use crate::algebra::strips::{STRIP, WORTH_MOVING, WORTH_THREADS, column_strips, for_all};
 
 /// Entry of B: column, position in L, value.
 type Entry = (u32, usize, f64);
@@ -83,38 +84,46 @@ pub(crate) struct Shared {
 /// Y and what is left of F, for the columns of B that a supernode sees.
 struct Half {
     /// Rows of its own columns.
-    own: Mat<f64>,
+    own: Full,
     /// Rows below.
-    below: Mat<f64>,
+    below: Full,
 }
 
 impl Half {
     fn zeros(node: &Supernode, width: usize) -> Self {
         let (k, height) = (node.columns.len(), node.height());
         Self {
-            own: Mat::zeros(k, width),
-            below: Mat::zeros(height - k, width),
+            own: Full::zeros(k, width),
+            below: Full::zeros(height - k, width),
         }
     }
 
     /// Adds the update of a child, whose rows stand at `places` here; `from` and `to`: columns of B, increasing.
-    fn add(&mut self, update: &Mat<f64>, places: &[u32], from: &[u32], to: &[u32]) {
-        let (own, mut at) = (self.own.nrows(), 0);
+    fn add(&mut self, update: &Full, places: &[u32], from: &[u32], to: &[u32]) {
+        let own = self.own.rows();
         let (first, second) = places.split_at(places.partition_point(|&p| (p as usize) < own));
-        for (j, &column) in from.iter().enumerate() {
-            at += to[at..].partition_point(|&c| c < column);
-            let (above, below) = update.col_as_slice(j).split_at(first.len());
-            let to = self.own.col_as_slice_mut(at);
-            (first.iter().zip(above)).for_each(|(&row, value)| to[row as usize] += value);
-            let to = self.below.col_as_slice_mut(at);
-            (second.iter().zip(below)).for_each(|(&row, value)| to[row as usize - own] += value);
-        }
+        let threads = places.len() * from.len() > WORTH_MOVING;
+        let update = |at: usize| {
+            let j = from.binary_search(&to[at]).ok()?;
+            Some(update.column(j).split_at(first.len()))
+        };
+        self.own.for_columns(threads, |at, to| {
+            if let Some((above, _)) = update(at) {
+                (first.iter().zip(above)).for_each(|(&row, value)| to[row as usize] += value);
+            }
+        });
+        self.below.for_columns(threads, |at, to| {
+            if let Some((_, below)) = update(at) {
+                let pairs = second.iter().zip(below);
+                pairs.for_each(|(&row, value)| to[row as usize - own] += value);
+            }
+        });
     }
 }
 
 impl Columns {
     /// Columns with a part in Y of those that a supernode sees, of which the shared ones stand last; `None` where it sees none of these.
-    fn added_up(&self, seen: &[u32], y: &Mat<f64>) -> Option<(Vec<u32>, Mat<f64>)> {
+    fn added_up(&self, seen: &[u32], y: &Full) -> Option<(Vec<u32>, Full)> {
         let m = self.own.len() as u32;
         let (own, shared) = seen.split_at(seen.partition_point(|&c| c < m));
         let parts = |&c: &u32| &self.shared[(c - m) as usize].parts;
@@ -125,12 +134,12 @@ impl Columns {
         let mut whole: Vec<u32> = own.iter().copied().chain(others).collect();
         whole.sort_unstable();
         whole.dedup();
-        let mut sum = Mat::zeros(y.nrows(), whole.len());
+        let mut sum = Full::zeros(y.rows(), whole.len());
         let mut put = |column: u32, part: f64, y: &[f64]| {
             let at = whole.partition_point(|&c| c < column);
-            add(part, y, sum.col_as_slice_mut(at));
+            add(part, y, sum.column_mut(at));
         };
-        let mut columns = (0..y.ncols()).map(|j| y.col_as_slice(j));
+        let mut columns = (0..y.columns()).map(|j| y.column(j));
         (own.iter().zip(&mut columns)).for_each(|(&column, y)| put(column, 1.0, y));
         for (c, y) in shared.iter().zip(columns) {
             (parts(c).iter()).for_each(|&(column, part)| put(column, part, y));
@@ -142,7 +151,7 @@ impl Columns {
 impl Cholesky {
     /// W, if it is to be formed, of which the upper triangle counts, and its diagonal. The same bits for any number of threads, and
     /// for the diagonal whether W is formed or not.
-    pub fn condense(&self, b: &Columns, formed: bool) -> (Mat<f64>, Vec<f64>) {
+    pub fn condense(&self, b: &Columns, formed: bool) -> (Full, Vec<f64>) {
         let (tree, m) = (&self.tree, b.own.len());
         let of = tree.supernodes();
         let mut entries: Vec<Vec<Entry>> = vec![Vec::new(); tree.nodes.len()];
@@ -155,7 +164,7 @@ impl Cholesky {
         let begins = begins.flat_map(|(s, own)| own.iter().map(move |e| (e.0, s)));
         let seen = tree.seen(begins);
         let size = if formed { m } else { 0 };
-        let mut w = Mat::<f64>::zeros(size, size);
+        let mut w = Full::zeros(size, size);
         let mut squares = vec![0.0; m];
         let mut fronts: Vec<Option<Half>> = tree.nodes.iter().map(|_| None).collect();
         for (s, node) in tree.nodes.iter().enumerate() {
@@ -171,8 +180,8 @@ impl Cholesky {
                 y.own[(p - node.columns.start, at)] += value;
             }
             let threads = (width * k * height) as f64 > WORTH_THREADS;
-            let strips = column_strips(y.own.as_mut(), STRIP).into_iter();
-            let strips = strips.zip(column_strips(y.below.as_mut(), STRIP));
+            let strips = column_strips(y.own.view_mut(), STRIP).into_iter();
+            let strips = strips.zip(column_strips(y.below.view_mut(), STRIP));
             for_all(
                 strips.collect(),
                 threads,
@@ -201,11 +210,11 @@ impl Cholesky {
                 None => (&columns[..], &y.own),
             };
             for (j, &column) in whole.iter().enumerate() {
-                let own = sum.col_as_slice(j).iter();
+                let own = sum.column(j).iter();
                 squares[column as usize] += own.map(|y| y * y).sum::<f64>();
             }
             if formed {
-                add_square(w.as_mut(), whole, sum.as_ref());
+                add_square(w.view_mut(), whole, sum.view());
             }
             // The part that goes into the columns above is freed at once.
             if let Some(parent) = tree.nodes.get(node.parent) {
