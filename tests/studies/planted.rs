@@ -44,8 +44,8 @@ const FAULTS: &[Fault] = &[
     Fault {
         name: "rank rule: every multiplier stays",
         file: "xfem/src/contact/rank.rs",
-        from: "search(arms, rows, [DEPENDENT, UNRESISTED])",
-        to: "search(arms, rows, [1e-15 * DEPENDENT, 1e-15 * UNRESISTED])",
+        from: "UNTOLD: [f64; 2] = [1e-2, 1e-3]",
+        to: "UNTOLD: [f64; 2] = [1e-17, 1e-18]",
         causes: &[
             "wrong patch",
             "refused",

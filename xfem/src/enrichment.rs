@@ -294,6 +294,17 @@ impl Enrichment {
         self.node_ptr[node]..self.node_ptr[node + 1]
     }
 
+    /// Piece functions of a node.
+    pub fn pieces_of(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.enriched_of(node);
+        own.filter(|&f| matches!(self.functions[f].kind, FunctionKind::Piece { .. }))
+    }
+
+    /// True for a branch function.
+    pub fn is_branch(&self, function: usize) -> bool {
+        matches!(self.functions[function].kind, FunctionKind::Branch { .. })
+    }
+
     /// True if a node lies on a crack between its ends, so that the displacement jumps there.
     pub fn jumps_at(&self, node: usize) -> bool {
         !self.enriched_of(node).is_empty() && self.on_crack.contains(&(node as u32))
@@ -350,8 +361,7 @@ impl Enrichment {
 
     /// True if a function of the cell is a branch function.
     pub fn has_branch(&self, cell: usize) -> bool {
-        let is_branch = |kind| matches!(kind, FunctionKind::Branch { .. });
-        self.kinds(cell).any(is_branch)
+        self.cell(cell).iter().any(|&f| self.is_branch(f as usize))
     }
 
     fn kinds(&self, cell: usize) -> impl Iterator<Item = FunctionKind> + '_ {

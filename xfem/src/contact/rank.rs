@@ -16,20 +16,20 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::geometry::{Point, add_scaled, norm, root, sub, unite};
 use crate::stiffness::inverse_iteration::smallest_eigenvalue;
 
 use super::pairs::{ContactPoint, ContactSurface};
 
-/// Pivots below this are zero: the square of what is new in a row of unit length.
-pub const DEPENDENT: f64 = 1e-2;
+/// Pivots below the first are zero: the square of what is new in a row of unit length. So are eigenvalues of Ŝ below the second: at
+/// most its inverse times rounding is what the forces may be off. With 1e-4 the constant forces of facets around a circle had twice
+/// to ten times the error in their tractions.
+pub const UNTOLD: [f64; 2] = [1e-2, 1e-3];
 
-/// Eigenvalues of Ŝ below this are zero: at most its inverse times rounding is what the forces may be off. With 1e-4 the
-/// constant forces of facets around a circle had twice to ten times the error in their tractions.
-pub const UNRESISTED: f64 = 1e-3;
-
-/// Pivots and eigenvalues below this are rounding. Between two cracks that nearly touch both fall with their distance.
-const SINGULAR: f64 = 1e-10;
+/// Pivots and eigenvalues below these are rounding. Between two cracks that nearly touch both fall with their distance.
+pub const SINGULAR: [f64; 2] = [1e-10; 2];
 
 /// A row with less than this of the largest square in S moves no displacement that a tolerance tells: on a sliver only functions
 /// jump that nearly vanish there.
@@ -45,21 +45,26 @@ pub const NOTHING: f64 = 5e-9;
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
 
-/// Points whose forces no displacement determines beside those of the others; `rows(k)`: the rows (n, a[, b]) of a point.
+/// Points whose forces no displacement determines beside those of the others, by the least pivot and eigenvalue; `rows(k)`: the rows
+/// (n, a[, b]) of a point.
 ///
 /// Arms with few points come first and keep them; of equals those with the larger weights, and each from its end with the
 /// larger, however the cracks are read.
 pub fn dependent(
     arms: &[std::ops::Range<usize>],
     weight: impl Fn(usize) -> f64,
-    rows: impl Fn(usize) -> Vec<Row>,
+    rows: impl Fn(usize) -> Vec<Row> + Sync,
+    limits: [f64; 2],
 ) -> Vec<usize> {
-    search(&ordered(arms, weight), rows, [DEPENDENT, UNRESISTED])
-}
-
-/// Points whose forces nothing at all tells from those of the others.
-pub fn singular(arms: &[std::ops::Range<usize>], rows: impl Fn(usize) -> Vec<Row>) -> Vec<usize> {
-    search(&ordered(arms, |_| 1.0), rows, [SINGULAR; 2])
+    let arms = &ordered(arms, weight);
+    let points = arms.par_iter().flatten();
+    let rows: BTreeMap<usize, Vec<Row>> = points.map(|&point| (point, rows(point))).collect();
+    let squares = rows.values().flatten().map(square);
+    let least = WEAK * squares.fold(0.0, f64::max);
+    let groups = coupled(arms, &rows).into_par_iter();
+    groups
+        .flat_map_iter(|group| search_group(&group, &rows, least, limits))
+        .collect()
 }
 
 fn ordered(arms: &[std::ops::Range<usize>], weight: impl Fn(usize) -> f64) -> Vec<Vec<usize>> {
@@ -73,18 +78,6 @@ fn ordered(arms: &[std::ops::Range<usize>], weight: impl Fn(usize) -> f64) -> Ve
     }
     order.sort_by_cached_key(|arm| (arm.len(), arm.iter().map(rounded).collect::<Vec<_>>()));
     order
-}
-
-/// Points that are dependent on those before them in the arms' order.
-fn search(arms: &[Vec<usize>], rows: impl Fn(usize) -> Vec<Row>, limits: [f64; 2]) -> Vec<usize> {
-    let points = arms.iter().flatten();
-    let rows: BTreeMap<usize, Vec<Row>> = points.map(|&point| (point, rows(point))).collect();
-    let squares = rows.values().flatten().map(square);
-    let least = WEAK * squares.fold(0.0, f64::max);
-    let groups = coupled(arms, &rows).into_iter();
-    groups
-        .flat_map(|group| search_group(&group, &rows, least, limits))
-        .collect()
 }
 
 /// Arms that share unknowns, directly or through others: what is dependent is so among these.

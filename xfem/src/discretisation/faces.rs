@@ -1,6 +1,8 @@
 //! Contact surfaces of all cracks of a body, without points that no displacement can tell from others.
 
-use crate::contact::pairs::{ContactPoint, ContactSurface, jump_rows};
+use rayon::prelude::*;
+
+use crate::contact::pairs::{ContactSurface, jump_rows};
 use crate::contact::{self, ContactSpace, rank};
 use crate::enrichment::EnrichmentError;
 use crate::mesh::Lengths;
@@ -17,7 +19,7 @@ pub(super) fn faces(
     lengths: &Lengths,
     doubled: Option<ContactSurface>,
     numbers: &[Option<u32>],
-    scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)>,
+    scaled: impl Fn(&[(usize, f64)]) -> Vec<(usize, f64)> + Sync,
 ) -> Result<ContactSurface, DiscretisationError> {
     let (dim, cracks) = (integrator.mesh.dim(), integrator.cracks);
     let held = |unknown: usize| numbers[unknown].is_none();
@@ -27,20 +29,22 @@ pub(super) fn faces(
     };
     // Points of the arms whose space is integrated.
     let mut arms: Vec<std::ops::Range<usize>> = Vec::new();
-    for (number, &space) in spaces.iter().enumerate() {
-        // The arms of a crack one after the other.
-        let own = (0..cracks.len()).filter(|&index| cracks[index].number == number);
-        for index in own {
-            let start = surface.points.len();
-            let own = contact::surface(integrator, index, space, held);
-            surface.append(own.map_err(|e| DiscretisationError::Cell(e, None))?);
-            if space.is_integrated() {
-                arms.push(start..surface.points.len());
-            }
+    // The arms of a crack one after the other.
+    let mut order: Vec<usize> = (0..cracks.len()).collect();
+    order.sort_by_key(|&index| cracks[index].number);
+    let found = order.into_par_iter().map(|index| {
+        let space = spaces[cracks[index].number];
+        (space, contact::surface(integrator, index, space, held))
+    });
+    for (space, own) in found.collect::<Vec<_>>() {
+        let start = surface.points.len();
+        surface.append(own.map_err(|e| DiscretisationError::Cell(e, None))?);
+        if space.is_integrated() {
+            arms.push(start..surface.points.len());
         }
     }
-    let rows = |point: &[ContactPoint]| {
-        let rows = jump_rows(dim, point);
+    let rows = |surface: &ContactSurface, k: usize| {
+        let rows = jump_rows(dim, &surface.points[k..=k]);
         rows.iter().map(|row| scaled(row)).collect()
     };
     let size = lengths.smallest.powi(dim as i32 - 1);
@@ -50,14 +54,15 @@ pub(super) fn faces(
     }
     loop {
         let weight = |k: usize| surface.points[k].weight;
-        let lost = rank::dependent(&arms, weight, |k| rows(&surface.points[k..=k]));
+        let lost = rank::dependent(&arms, weight, |k| rows(&surface, k), rank::UNTOLD);
         if lost.is_empty() {
             break;
         }
         let (fewer, merged) = rank::merge(&mut surface, &arms, &lost, false);
         arms = fewer;
         if merged == 0 {
-            if let Some(&point) = rank::singular(&arms, |k| rows(&surface.points[k..=k])).first() {
+            let lost = rank::dependent(&arms, |_| 1.0, |k| rows(&surface, k), rank::SINGULAR);
+            if let Some(&point) = lost.first() {
                 let crack = surface.points[point].crack;
                 return Err(EnrichmentError::Undetermined(crack).into());
             }

@@ -11,7 +11,6 @@ use crate::geometry::{Point, root, unite};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
-use super::basis::FunctionKind;
 
 /// A body that can move without any contact point telling.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,7 +47,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     };
     // A node without cells of its own side still has a copy there.
     for node in 0..mesh.nodes.len() {
-        let none = vec![0.0; steps_of(enrichment, node).count()];
+        let none = vec![0.0; enrichment.pieces_of(node).count()];
         copy_at(&mut parent, node, none);
     }
     for cell in 0..mesh.cell_count() {
@@ -57,7 +56,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
         for region in 0..enrichment.regions(cell) {
             let mut first = None;
             for &node in mesh.cell(cell) {
-                let constants = steps_of(enrichment, node as usize).map(|f| {
+                let constants = enrichment.pieces_of(node as usize).map(|f| {
                     let place = functions.iter().position(|&g| g as usize == f);
                     place.map_or(0.0, |i| steps[region * functions.len() + i])
                 });
@@ -86,12 +85,6 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     Pieces { count, copies }
 }
 
-/// Piece functions of a node.
-fn steps_of(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
-    let own = enrichment.enriched_of(node);
-    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
-}
-
 impl Pieces {
     /// Piece of a node on its own piece of its support.
     pub fn of_node(&self, node: usize) -> usize {
@@ -115,7 +108,7 @@ impl Pieces {
             let x = &mesh.nodes[node];
             let own = r(copies[0].1, x);
             u[node * dim..(node + 1) * dim].copy_from_slice(&own[..dim]);
-            let functions: Vec<usize> = steps_of(enrichment, node).collect();
+            let functions: Vec<usize> = enrichment.pieces_of(node).collect();
             let others = &copies[1..];
             let moved = others.iter().any(|copy| r(copy.1, x) != own);
             if functions.is_empty() || !moved {

@@ -13,6 +13,8 @@ mod room;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
+
 use self::corners::Corner;
 use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::flat;
@@ -106,10 +108,14 @@ impl Tips {
             endings: search.endings(),
             ..Tips::default()
         };
-        for (number, tip) in trace.tips.iter().enumerate().filter(|t| search.kept[t.0]) {
+        let kept = trace.tips.par_iter().enumerate();
+        let found = kept.filter(|t| search.kept[t.0]).map(|(number, tip)| {
             let end = search.end(number);
             let zone = search.zone(tip, &end);
             let beyond = search.beyond(tip, &end, &zone);
+            (tip, end, zone, beyond)
+        });
+        for (tip, end, zone, beyond) in found.collect::<Vec<_>>() {
             tips.add(end.0.clone(), &tip.cells, zone);
             if let Some(zone) = beyond {
                 tips.add(end.0, &[], zone);
@@ -253,6 +259,7 @@ impl Search<'_> {
     fn round(&mut self) -> Result<bool, EnrichmentError> {
         self.divide()?;
         let kept: Vec<bool> = (0..self.kept.len())
+            .into_par_iter()
             .map(|tip| self.kept[tip] && self.has_room(tip))
             .collect();
         let fewer = kept != self.kept;

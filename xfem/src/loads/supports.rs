@@ -239,7 +239,7 @@ impl<'a> Supports<'a> {
         let mut held = self.held(integrator);
         let mut fixed = BTreeMap::new();
         for (&node, holders) in &self.of {
-            let copies: Vec<usize> = piece_functions(enrichment, node).collect();
+            let copies: Vec<usize> = enrichment.pieces_of(node).collect();
             let parted = !copies.is_empty() && enrichment.jumps_at(node);
             for &s in holders {
                 self.choose_lip(s, parted.then_some(node), &copies, &mut held)?;
@@ -449,15 +449,9 @@ fn at_rest(support: usize) -> Prescribed {
     }
 }
 
-/// Piece functions of a node.
-fn piece_functions(enrichment: &Enrichment, node: usize) -> impl Iterator<Item = usize> + '_ {
-    let own = enrichment.enriched_of(node);
-    own.filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
-}
-
 /// The copy of a node that lives in a region of a cell.
 fn copy_at(enrichment: &Enrichment, node: usize, cell: usize, region: CellRegion) -> usize {
-    let mut pieces = piece_functions(enrichment, node);
+    let mut pieces = enrichment.pieces_of(node);
     pieces
         .find(|&f| enrichment.step(cell, region, f) != 0.0)
         .unwrap_or(node)

@@ -16,6 +16,8 @@ mod ties;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
+
 use crate::enrichment::basis::FunctionKind;
 use crate::enrichment::{Enrichment, Zone};
 use crate::geometry::{Point, norm, sub};
@@ -100,7 +102,7 @@ impl SolverBasis {
         mesh: &Mesh,
         enrichment: &Enrichment,
         users: &[Vec<u32>],
-        matrix: impl Fn(usize) -> CellView<'a>,
+        matrix: impl Fn(usize) -> CellView<'a> + Sync,
         held: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let dim = mesh.dim();
@@ -110,26 +112,27 @@ impl SolverBasis {
         };
         let surplus = surplus(dim, enrichment, &held);
         // Pieces are disjoint: of a node without branch functions they depend on no other.
-        let is_branch =
-            |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
         let free = |f: usize| (0..dim).any(|a| !held(f, a));
         let acts = |node: &usize| {
             let mut own = enrichment.enriched_of(*node);
-            own.clone().any(is_branch) && own.any(free)
+            own.clone().any(|f| enrichment.is_branch(f)) && own.any(free)
         };
         let nodes: Vec<usize> = (0..enrichment.nodes()).filter(acts).collect();
         let standard = |&node: &usize| gram(enrichment, dim, &[node], users, &matrix)[0];
-        let stiffest = nodes.iter().map(standard).fold(f64::MIN_POSITIVE, f64::max);
+        let stiffest = nodes
+            .par_iter()
+            .map(standard)
+            .reduce(|| f64::MIN_POSITIVE, f64::max);
         // A power of two changes no bit of a scaled matrix.
         let unit = (0.5 * stiffest.log2()).round().exp2();
-        for node in nodes {
-            let own = enrichment.enriched_of(node);
-            let all: Vec<usize> = own.clone().collect();
-            let gram = gram(enrichment, dim, &all, users, &matrix);
+        let own = |node: usize| enrichment.enriched_of(node).collect::<Vec<usize>>();
+        let own = nodes.into_par_iter().map(own);
+        let grams = own.map(|all| (gram(enrichment, dim, &all, users, &matrix), all));
+        for (gram, all) in grams.collect::<Vec<_>>() {
             if basis.block_of.is_empty() {
                 basis.block_of = vec![None; enrichment.functions.len()];
             }
-            for f in own.clone() {
+            for &f in &all {
                 basis.block_of[f] = Some(basis.blocks.len() as u32);
             }
             let left_out =
@@ -183,8 +186,7 @@ impl SolverBasis {
         users: &[Vec<u32>],
         matrix: &impl Fn(usize) -> CellView<'a>,
     ) {
-        let is_branch =
-            |f: usize| matches!(enrichment.functions[f].kind, FunctionKind::Branch { .. });
+        let is_branch = |f: usize| enrichment.is_branch(f);
         let nodes = nodes.iter().map(|&node| node as usize);
         let enriched = nodes.clone().flat_map(|node| enrichment.enriched_of(node));
         let mut own: Vec<usize> = nodes.chain(enriched).collect();

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DMatrix, DVectorViewMut};
 
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::FunctionKind;
 use crate::stiffness::elasticity::CellView;
 use crate::stiffness::inverse_iteration::smallest_eigenvalue;
 
@@ -132,7 +131,7 @@ pub(super) fn alike<'a>(
     dim: usize,
     enrichment: &Enrichment,
     users: &[Vec<u32>],
-    matrix: &impl Fn(usize) -> CellView<'a>,
+    matrix: &(impl Fn(usize) -> CellView<'a> + Sync),
     held: impl Fn(usize, usize) -> bool,
 ) -> BTreeSet<usize> {
     let square = |f: usize| gram(enrichment, dim, &[f], users, matrix)[0];
@@ -140,10 +139,7 @@ pub(super) fn alike<'a>(
     let mut found = BTreeSet::new();
     let mut thin = BTreeSet::new();
     for node in 0..enrichment.nodes() {
-        let own = enrichment.enriched_of(node);
-        let pieces: Vec<usize> = own
-            .filter(|&f| matches!(enrichment.functions[f].kind, FunctionKind::Piece { .. }))
-            .collect();
+        let pieces: Vec<usize> = enrichment.pieces_of(node).collect();
         if pieces.is_empty() {
             continue;
         }
