@@ -204,8 +204,8 @@ mod tests {
 
     #[test]
     fn too_many_rows_are_refused_before_memory_is_asked_for() {
-        let machine = crate::algebra::memory::machine_gb().unwrap_or(6.4);
-        let n = 2 * (1e9 * machine / 64.0).sqrt().ceil() as usize + 2;
+        let free = crate::algebra::memory::free_gb();
+        let n = 2 * (1e9 * free / 64.0).sqrt().ceil() as usize + 2;
         let unit = |n: usize| (0..=n).collect::<Vec<_>>();
         let body = Elastic::new(ElasticParts {
             dim: 2,

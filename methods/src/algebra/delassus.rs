@@ -9,7 +9,6 @@ use crate::algebra::matrix::SquareMatrix;
 use crate::algebra::memory;
 use crate::algebra::plain::Full;
 use crate::algebra::sparse::Sparse;
-use crate::algebra::strips::WORTH_MOVING;
 use crate::error::MethodError;
 
 /// The Delassus operator on the contact rows in use, in m/N (2D: m²/N): symmetric positive semi-definite where it comes from
@@ -45,8 +44,7 @@ pub trait Delassus: Send + Sync {
     /// # Errors
     /// None that an operator that exists could cause.
     fn select(&self, at: &[usize]) -> Result<Arc<dyn Delassus>, MethodError> {
-        let mut block = Full::zeros(at.len(), at.len());
-        block.for_columns(at.len() * at.len() > WORTH_MOVING, |j, to| {
+        let block = Full::of_columns(at.len(), at.len(), |j, to| {
             let mut work = Vec::new();
             let column = self.column(at[j], &mut work);
             to.iter_mut().zip(at).for_each(|(to, &i)| *to = column[i]);
@@ -270,10 +268,7 @@ pub(crate) fn dense(w: &SquareMatrix) -> Result<Full, MethodError> {
 /// # Errors
 /// [`MethodError::TooManyRows`].
 pub fn check_rows(rows: usize) -> Result<(), MethodError> {
-    /// Where the system does not tell: 20 000 rows.
-    const UNKNOWN_GB: f64 = 6.4;
-    let needed_gb = 16e-9 * (rows as f64).powi(2);
-    let free_gb = memory::machine_gb().map_or(UNKNOWN_GB, |all| all - memory::resident_gb());
+    let (needed_gb, free_gb) = (16e-9 * (rows as f64).powi(2), memory::free_gb());
     if needed_gb > free_gb {
         return Err(MethodError::TooManyRows {
             rows,

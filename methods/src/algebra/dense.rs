@@ -27,9 +27,10 @@ pub(crate) struct DenseLu {
 impl DenseLu {
     /// `None` if A is singular to working precision.
     pub fn new(a: &Mat<f64>) -> Option<Self> {
-        let mut lu = Self::default();
-        let factors = lu.zeros(a.ncols());
-        factors.for_columns(false, |j, column| column.copy_from_slice(a.col_as_slice(j)));
+        let mut lu = Self {
+            factors: a.into(),
+            ..Self::default()
+        };
         lu.factor().then_some(lu)
     }
 

@@ -11,11 +11,13 @@ pub fn machine_gb() -> Option<f64> {
     Some(1e-9 * (1024.0 * kilobytes).min(granted.unwrap_or(f64::INFINITY)))
 }
 
-/// Memory that this process holds [GB]; 0 where the system does not tell.
-pub(crate) fn resident_gb() -> f64 {
+/// Memory of this machine that this process does not hold yet [GB].
+pub(crate) fn free_gb() -> f64 {
+    /// Where the system does not tell: W of 20 000 rows with a tangent.
+    const UNKNOWN: f64 = 6.4;
     let about = read_to_string("/proc/self/status").ok();
     let held = about.and_then(|about| kilobytes(&about, "VmRSS:"));
-    1024e-9 * held.unwrap_or(0.0)
+    machine_gb().map_or(UNKNOWN, |all| all - 1024e-9 * held.unwrap_or(0.0))
 }
 
 /// The number of a line that begins so.

@@ -29,10 +29,19 @@ pub(crate) struct Full {
 impl Full {
     /// Zeros to add to: written, since a page that is read before is given out twice.
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        let mut zeros = Self::default();
-        zeros.clear(rows, columns);
-        zeros.for_columns(rows * columns > WORTH_MOVING, |_, column| column.fill(0.0));
-        zeros
+        Self::of_columns(rows, columns, |_, column| column.fill(0.0))
+    }
+
+    /// What `write` makes of every column, of zeros.
+    pub fn of_columns(
+        rows: usize,
+        columns: usize,
+        write: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Self {
+        let mut full = Self::default();
+        full.clear(rows, columns);
+        full.for_columns(write);
+        full
     }
 
     /// Zeros in place of what it holds, of which the system keeps no pages until they are written to.
@@ -82,10 +91,10 @@ impl Full {
         &mut self.values[j * self.stride..][..self.rows]
     }
 
-    /// Calls `act` with every column and its number, on several threads if that is asked for.
-    pub fn for_columns(&mut self, threads: bool, act: impl Fn(usize, &mut [f64]) + Sync) {
+    /// Calls `act` with every column and its number, of a large matrix on several threads.
+    pub fn for_columns(&mut self, act: impl Fn(usize, &mut [f64]) + Sync) {
         let (rows, stride) = (self.rows, self.stride.max(1));
-        if threads {
+        if self.values.len() > WORTH_MOVING {
             let columns = self.values.par_chunks_exact_mut(stride).enumerate();
             columns.for_each(|(j, column)| act(j, &mut column[..rows]));
         } else {
@@ -95,11 +104,11 @@ impl Full {
     }
 }
 
-impl From<Mat<f64>> for Full {
-    fn from(a: Mat<f64>) -> Self {
-        let mut full = Self::zeros(a.nrows(), a.ncols());
-        full.for_columns(false, |j, column| column.copy_from_slice(a.col_as_slice(j)));
-        full
+impl From<&Mat<f64>> for Full {
+    fn from(a: &Mat<f64>) -> Self {
+        Self::of_columns(a.nrows(), a.ncols(), |j, column| {
+            column.copy_from_slice(a.col_as_slice(j));
+        })
     }
 }
 

@@ -357,7 +357,7 @@ mod tests {
         agree(&|w| w.select(&at).unwrap().to_matrix().col_as_slice(3).to_vec());
         assert_eq!(sparse.matrix().unwrap(), chain(n, -1.5));
         assert!(sparse.is_definite(0.0) && !sparse.is_definite(-2.0));
-        let again = computed(full.to_matrix().into()).unwrap();
+        let again = computed((&full.to_matrix()).into()).unwrap();
         assert_eq!(again.sparse().unwrap().w, sparse.w);
     }
 

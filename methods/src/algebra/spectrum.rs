@@ -100,21 +100,21 @@ mod tests {
                 0.0
             }
         });
-        let (least, most) = extremes(&Dense::new(w, true), &none).unwrap();
+        let (least, most) = extremes(&Dense::new(&w, true), &none).unwrap();
         assert!(
             (least - 3.0).abs() < 1e-9 && (most - 40.0).abs() < 1e-9,
             "{least} {most}"
         );
-        assert_eq!(extremes(&Dense::new(Mat::zeros(3, 3), true), &none), None);
+        assert_eq!(extremes(&Dense::new(&Mat::zeros(3, 3), true), &none), None);
     }
 
     /// A nilpotent matrix has eigenvalues 0 alone, and the rank of its entry.
     #[test]
     fn the_rank_counts_singular_values() {
         let entry = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == 0 && j == 2)));
-        assert_eq!(rank(&Dense::new(entry, false)), Some(1));
+        assert_eq!(rank(&Dense::new(&entry, false)), Some(1));
         let ones = Mat::from_fn(4, 4, |i, j| f64::from(u8::from(i % 2 == j % 2)) * 1e-7);
-        assert_eq!(rank(&Dense::new(ones, true)), Some(2));
-        assert_eq!(rank(&Dense::new(Mat::zeros(2, 2), true)), Some(0));
+        assert_eq!(rank(&Dense::new(&ones, true)), Some(2));
+        assert_eq!(rank(&Dense::new(&Mat::zeros(2, 2), true)), Some(0));
     }
 }

@@ -12,7 +12,6 @@ use std::ops::Range;
 use crate::algebra::delassus::Delassus;
 use crate::algebra::plain::Full;
 use crate::algebra::sparse::{Sparse, SparseLu};
-use crate::algebra::strips::WORTH_MOVING;
 use crate::algebra::tied::{Tie, TiedLu};
 use crate::condensed::problem::ContactProblem;
 
@@ -158,7 +157,7 @@ impl Bordered {
                 law_points(active, c, &mut self.laws);
                 let rows = (&active[..], *a, &self.laws[..]);
                 for (to, places) in [(&mut *J, &active[..]), (&mut *across, &tied)] {
-                    to.for_columns(size * size > WORTH_MOVING, |j, column| {
+                    to.for_columns(|j, column| {
                         if let Some(place) = places.get(j) {
                             let column = &mut column[..n];
                             law_column(problem, w, place, rows, &mut Vec::new(), column);

@@ -211,10 +211,8 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
     };
     // Π W Π = W − Q (Qᵀ W) − (W Q) Qᵀ + Q (Qᵀ W Q) Qᵀ.
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
-    let (mut augmented, mut work) = (Full::zeros(m, m), Vec::new());
-    for j in 0..m {
-        let column = augmented.column_mut(j);
-        column.copy_from_slice(w.column(j, &mut work));
+    let augmented = Full::of_columns(m, m, |j, column| {
+        column.copy_from_slice(w.column(j, &mut Vec::new()));
         for (i, entry) in column.iter_mut().enumerate() {
             for a in 0..q.len() {
                 *entry += kappa * q[a][i] * q[a][j] - q[a][i] * qw[a][j] - wq[a][i] * q[a][j];
@@ -223,6 +221,6 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
                 }
             }
         }
-    }
+    });
     Dense::new(augmented, w.symmetric())
 }

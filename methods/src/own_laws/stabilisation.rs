@@ -77,7 +77,7 @@ impl Stabilisation {
         let weight = weights(system, rows);
         let scaled = Mat::from_fn(m, m, |i, j| t[(i, j)] / (weight[i] * weight[j]).sqrt());
         let (_, lambda) =
-            extremes(&Dense::new(scaled, true), &ModeJumps::empty()).ok_or_else(|| {
+            extremes(&Dense::new(&scaled, true), &ModeJumps::empty()).ok_or_else(|| {
                 kernel(
                     "condensation of Nitsche's method",
                     "no displacement causes stress at the contact points".into(),

@@ -16,7 +16,7 @@ use crate::algebra::dense::add;
 use crate::algebra::multifrontal::Cholesky;
 use crate::algebra::multifrontal::tree::{AssemblyTree, Supernode};
 use crate::algebra::plain::Full;
-use crate::algebra::strips::{STRIP, WORTH_MOVING, WORTH_THREADS, column_strips, for_all};
+use crate::algebra::strips::{STRIP, WORTH_THREADS, column_strips, for_all};
 
 /// Entry of B: column, position in L, value.
 type Entry = (u32, usize, f64);
@@ -102,18 +102,18 @@ impl Half {
     fn add(&mut self, update: &Full, places: &[u32], from: &[u32], to: &[u32]) {
         let own = self.own.rows();
         let (first, second) = places.split_at(places.partition_point(|&p| (p as usize) < own));
-        let threads = places.len() * from.len() > WORTH_MOVING;
-        let update = |at: usize| {
-            let j = from.binary_search(&to[at]).ok()?;
+        let of_child = |column| {
+            let j = from.binary_search(column).ok()?;
             Some(update.column(j).split_at(first.len()))
         };
-        self.own.for_columns(threads, |at, to| {
-            if let Some((above, _)) = update(at) {
+        let updates: Vec<_> = to.iter().map(of_child).collect();
+        self.own.for_columns(|at, to| {
+            if let Some((above, _)) = updates[at] {
                 (first.iter().zip(above)).for_each(|(&row, value)| to[row as usize] += value);
             }
         });
-        self.below.for_columns(threads, |at, to| {
-            if let Some((_, below)) = update(at) {
+        self.below.for_columns(|at, to| {
+            if let Some((_, below)) = updates[at] {
                 let pairs = second.iter().zip(below);
                 pairs.for_each(|(&row, value)| to[row as usize - own] += value);
             }
