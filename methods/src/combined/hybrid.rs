@@ -14,7 +14,7 @@
 //!   x <- s sweeps from x,  s = first · 2^round        a globally sound, slow method
 //!   y <- Newton from x, active sets                   a locally fast one, stopped after 8 steps without progress
 //!   if W is sparse, or the tangent singular:          granular media, redundant points: every later round would fail, too
-//!     y <- interior-point from the start, then Newton from y, active sets;  leave the rounds
+//!     y <- interior-point from the start, Newton from near its end, active sets;  leave the rounds
 //!   y <- Newton from x, B-differentiable              it cycles elsewhere
 //! y <- ipm-anm from the start                         the slowest, and the one that solves most
 //! until the natural map of y, or of x, is small
@@ -55,7 +55,7 @@ use crate::contract::registry::{Method, Needs};
 use crate::contract::state::{Monitor, Status};
 use crate::error::MethodError;
 use crate::newton::b_newton::BEquations;
-use crate::newton::interior_point::{self, along_path};
+use crate::newton::interior_point::{FRACTION, NEAR, along_path};
 use crate::newton::ipm_anm::{self, along_series};
 use crate::newton::iteration::Newton;
 use crate::newton::newton_ac::AlartCurnier;
@@ -151,12 +151,7 @@ impl CondensedMethod for Solver {
             if sparse || end.status == Status::SingularTangent {
                 problem.begin_again();
                 let limits = runs.within(SHARE, PATH_PATIENCE, problem);
-                let end = along_path(problem, interior_point::FRACTION, limits, monitor)?;
-                if end.is_final() {
-                    return Ok(end);
-                }
-                let newton = runs.newton(Sets);
-                let end = runs.run(newton, end.at, problem, monitor)?;
+                let end = along_path(problem, FRACTION, NEAR, limits, monitor)?;
                 if end.is_final() {
                     return Ok(end);
                 }

@@ -339,11 +339,8 @@ fn sparse_columns(
     law: &Law<'_>,
     spring: f64,
 ) {
-    let (q, rho, n) = (
-        &problem.operator.modes.q,
-        problem.operator.rho,
-        active.len(),
-    );
+    let (modes, rho) = (&problem.operator.modes.q, problem.operator.rho);
+    let n = active.len();
     // Where each row stands among the active ones, and the rows of its point.
     let mut at = vec![None; problem.len()];
     (active.iter().enumerate()).for_each(|(i, (k, _))| at[*k] = Some(i));
@@ -351,14 +348,11 @@ fn sparse_columns(
     let around: Vec<_> = points
         .flat_map(|own| own.clone().map(move |_| own.clone()))
         .collect();
-    let border: Vec<Vec<(f64, f64)>> = (q.iter())
-        .map(|q| {
-            active
-                .iter()
-                .map(|place| law.border(place, q, rho))
-                .collect()
-        })
-        .collect();
+    let of_mode = |q: &Vec<f64>| -> Vec<(f64, f64)> {
+        let places = active.iter();
+        places.map(|place| law.border(place, q, rho)).collect()
+    };
+    let border: Vec<_> = modes.iter().map(of_mode).collect();
     lu.clear();
     let mut column = Vec::new();
     for (b, (k, own)) in active.iter().enumerate() {
@@ -366,10 +360,16 @@ fn sparse_columns(
         let local = k - own.start;
         let e = match law {
             Law::Rows { a, c } => {
-                for (i, w) in w.entries(*k) {
-                    for row in around[i].clone() {
-                        let c = c[row][i - around[i].start];
-                        column.extend(at[row].filter(|_| c != 0.0).map(|to| (to, c * w)));
+                // Rows of one point follow each other, in the column as in W.
+                let mut entries = w.entries(*k).peekable();
+                while let Some(&(i, _)) = entries.peek() {
+                    let (point, mut of_point) = (&around[i], [0.0; 3]);
+                    while let Some((i, w)) = entries.next_if(|(i, _)| point.contains(i)) {
+                        of_point[i - point.start] = w;
+                    }
+                    for row in point.clone() {
+                        let entry: f64 = c[row].iter().zip(of_point).map(|(c, w)| c * w).sum();
+                        column.extend(at[row].filter(|_| c[row] != [0.0; 3]).map(|to| (to, entry)));
                     }
                 }
                 a
@@ -385,12 +385,8 @@ fn sparse_columns(
         };
         let of_point = own.clone().filter_map(|l| Some((at[l]?, e[l][local])));
         column.extend(of_point);
-        column.extend(
-            border
-                .iter()
-                .enumerate()
-                .map(|(j, border)| (n + j, border[b].1)),
-        );
+        let motions = border.iter().enumerate();
+        column.extend(motions.map(|(j, border)| (n + j, border[b].1)));
         lu.push(&mut column);
     }
     for (j, border) in border.iter().enumerate() {

@@ -42,14 +42,17 @@
 
 use crate::algebra::dense::refill;
 use crate::condensed::branches::Branches;
-use crate::condensed::forces::{End, Ended};
+use crate::condensed::forces::{End, Ended, Forces};
 use crate::condensed::method::CondensedMethod;
 use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::options::options;
 use crate::contract::registry::{Method, Needs};
 use crate::contract::state::Monitor;
 use crate::newton::central_path::Products;
+use crate::newton::iteration::Newton;
 use crate::newton::path_equations::{Iterate, Lack, PathEquations};
+use crate::newton::pdas::Sets;
+use crate::newton::step::Tangent;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -74,6 +77,11 @@ options! {
 pub(crate) const FRACTION: f64 = 0.99;
 /// Steps without progress after which the iteration counts as stalled.
 pub(crate) const PATIENCE: usize = 40;
+/// Newton's method is tried from the path below this violation, and again each time that it has fallen to such a part; it
+/// is given up after so many steps without progress.
+pub(crate) const NEAR: f64 = 1e-3;
+const AGAIN: f64 = 1e-3;
+const SOON: usize = 3;
 /// Steps below this length jam: the path is left, and taken up again deeper inside.
 const JAMMED: f64 = 0.02;
 /// Least depth of the start inside the cones, relative to the reference force per point.
@@ -86,14 +94,16 @@ impl CondensedMethod for InteriorPoint {
 
     fn iterate(&mut self, problem: &mut ContactProblem<'_>, monitor: &mut dyn Monitor) -> Ended {
         let limits = Limits::new(self.max_iterations, PATIENCE);
-        along_path(problem, self.fraction, limits, monitor)
+        along_path(problem, self.fraction, 0.0, limits, monitor)
     }
 }
 
-/// The loop, from the start of the increment until it ends. Every step works in the memory of the one before.
+/// The loop, from the start of the increment until it ends, or Newton's method does that is tried from a violation below `cross`
+/// on. Every step works in the memory of the one before.
 pub(crate) fn along_path(
     problem: &mut ContactProblem<'_>,
     fraction: f64,
+    mut cross: f64,
     limits: Limits,
     monitor: &mut dyn Monitor,
 ) -> Ended {
@@ -112,6 +122,14 @@ pub(crate) fn along_path(
             Check::Corrected => continue,
             Check::End(status) => break status,
         }
+        if violation < cross {
+            cross = AGAIN * violation;
+            let limits = Limits::new(limits.iterations, SOON);
+            let end = cross_over(problem, &at, limits, monitor)?;
+            if end.is_final() {
+                return Ok(end);
+            }
+        }
         if !on_path {
             depth = next_depth(depth, &at.p, violation);
             x.begin(problem, &at, &v, depth);
@@ -128,6 +146,19 @@ pub(crate) fn along_path(
         on_path = t >= JAMMED;
     };
     Ok(End { status, at })
+}
+
+/// Newton's method from a place on the path, given up soon: it knows the states of the points, or does not.
+pub(crate) fn cross_over(
+    problem: &mut ContactProblem<'_>,
+    at: &Forces,
+    limits: Limits,
+    monitor: &mut dyn Monitor,
+) -> Ended {
+    problem.begin_phase();
+    let end = Newton::plain(Sets, limits, Tangent::default()).run(problem, at.clone(), monitor);
+    problem.begin_phase();
+    end
 }
 
 /// How deep inside the cones the path begins: as far as the start is wrong, and twice as deep after every jam. The

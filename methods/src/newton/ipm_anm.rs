@@ -35,17 +35,15 @@
 
 use crate::algebra::dense::dot;
 use crate::condensed::branches::Branches;
-use crate::condensed::forces::{End, Ended, Forces};
+use crate::condensed::forces::{End, Ended};
 use crate::condensed::method::CondensedMethod;
 use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::options::options;
 use crate::contract::registry::{Method, Needs};
 use crate::contract::state::{Monitor, Status};
 use crate::newton::central_path::Products;
-use crate::newton::iteration::Newton;
+use crate::newton::interior_point::cross_over;
 use crate::newton::path_equations::{Iterate, Lack, PathEquations};
-use crate::newton::pdas::Sets;
-use crate::newton::step::Tangent;
 
 /// Registry entry.
 pub static METHOD: Method = Method {
@@ -132,27 +130,14 @@ pub(crate) fn along_series(
         path.here.x.forces(problem, &mut at);
         if path.here.sigma < cross {
             cross = AGAIN * path.here.sigma;
-            let end = cross_over(problem, &at, limits.iterations, monitor)?;
+            let limits = Limits::new(limits.iterations, PATIENCE);
+            let end = cross_over(problem, &at, limits, monitor)?;
             if end.is_final() {
                 return Ok(end);
             }
         }
     };
     Ok(End { status, at })
-}
-
-/// Newton's method from a place on the path, given up soon: it knows the states of the points, or does not.
-fn cross_over(
-    problem: &mut ContactProblem<'_>,
-    at: &Forces,
-    most: usize,
-    monitor: &mut dyn Monitor,
-) -> Ended {
-    problem.begin_phase();
-    let mut newton = Newton::plain(Sets, Limits::new(most, PATIENCE), Tangent::default());
-    let end = newton.run(problem, at.clone(), monitor);
-    problem.begin_phase();
-    end
 }
 
 /// A place on the path, a term of its series, or its tangent.
