@@ -186,17 +186,15 @@ impl Joiner<'_> {
         let mut places: Vec<Point> = self.trace.on_edges.get(&edge).cloned().unwrap_or_default();
         places.insert(0, from);
         places.push(to);
-        let parts = places.windows(2);
         let region = |cell: usize, p: &Point, q: &Point| match self.partitions.get(&cell) {
             None => Some(0),
             Some(partition) => partition.beside(p, q),
         };
-        parts
-            .filter_map(|w| {
-                let [one, two] = cells.map(|cell| region(cell, &w[0], &w[1]));
-                Some([(cells[0], one?), (cells[1], two?)])
-            })
-            .collect()
+        let parts = places.windows(2).filter_map(|w| {
+            let [one, two] = cells.map(|cell| region(cell, &w[0], &w[1]));
+            Some([(cells[0], one?), (cells[1], two?)])
+        });
+        parts.collect()
     }
 
     /// In 3D: where the polygons that the regions leave of the face overlap.
@@ -236,15 +234,12 @@ impl Joiner<'_> {
 
     /// The pieces of the support of a node beyond its own.
     fn pieces(&self, node: u32, cells: &[usize], joins: &[[Place; 2]]) -> Vec<Vec<Place>> {
-        let places: Vec<Place> = cells
-            .iter()
-            .flat_map(|&cell| (0..self.regions(cell)).map(move |region| (cell, region)))
-            .collect();
+        let own = |&cell: &usize| (0..self.regions(cell)).map(move |region| (cell, region));
+        let places: Vec<Place> = cells.iter().flat_map(own).collect();
         let number = |place: &Place| places.binary_search(place).unwrap_or_default();
         let mut parent: Vec<usize> = (0..places.len()).collect();
-        let inside = cells
-            .iter()
-            .filter_map(|&c| Some((c, self.partitions.get(&c)?)));
+        let divided = |&c: &usize| Some((c, self.partitions.get(&c)?));
+        let inside = cells.iter().filter_map(divided);
         let within = inside.flat_map(|(cell, partition)| {
             let pairs = partition.joined.iter();
             pairs.map(move |pair| pair.map(|region| (cell, region)))

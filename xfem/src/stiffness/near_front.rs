@@ -75,10 +75,15 @@ impl NearFront<'_> {
         crack: impl Fn(usize) -> (Nodal<f64>, Point),
         effort: Effort,
     ) -> Vec<(WeightedPoint, Region)> {
-        let distance = |x: &Point| {
-            let own = self.fronts.iter().map(|f| f.distance(x));
-            own.fold(f64::INFINITY, f64::min)
-        };
+        let least = |all: &mut dyn Iterator<Item = f64>| all.fold(f64::INFINITY, f64::min);
+        // Farther from the centre than another by a diameter, a front is nowhere in the cell the nearest.
+        let centre = self.map.centre();
+        let corners = self.map.iter().map(|corner| norm(&sub(corner, &centre)));
+        let from_centre = self.fronts.iter().map(|f| (f.distance(&centre), f));
+        let from_centre: Vec<(f64, &TipFrame)> = from_centre.collect();
+        let reach = least(&mut from_centre.iter().map(|f| f.0)) + 2.0 * corners.fold(0.0, f64::max);
+        let near = || from_centre.iter().filter(|f| f.0 <= reach);
+        let distance = |x: &Point| least(&mut near().map(|f| f.1.distance(x)));
         let nearer = |x: &Point| effort.nearer * distance(x);
         if let Some((front, chord)) = self.sliced(&distance) {
             return self.slices(front, chord, crack, effort.slices);
