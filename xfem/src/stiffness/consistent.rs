@@ -57,9 +57,9 @@ const EDGE_DEPTH: usize = 40;
 const SLIVER: f64 = 1e-8;
 
 /// Points per direction on a part of a face no longer than its distance from the front, and halvings: an error of 1e-5 of a
-/// face that the front enters.
-const BRANCH_FACE: usize = 6;
-const FACE_DEPTH: usize = 6;
+/// cell that the front enters.
+const BRANCH_FACE: usize = 4;
+const FACE_DEPTH: usize = 4;
 
 impl CellIntegrator<'_> {
     /// Points of a cell with the gradients of its functions, which satisfy the divergence theorem.
