@@ -23,7 +23,7 @@
 //! # Guarantees
 //! F' is regular along the path but for turns, which the arc length takes, and a path that stays bounded ends in a solution. Redundant
 //! points are no obstacle: inside the cones the matrix is regular. `stickslip study random` with seed 1, 200 problems for each of
-//! seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 10 steps in the median and 137 at most. It takes hundreds where the path winds: 330 on RockPile
+//! seven μ from 0 to 5 in 2D and 3D, tier high: all 2800 solved, in 10 steps in the median and 156 at most. It takes hundreds where the path winds: 330 on RockPile
 //! of the Siconos benchmark (463 points, μ = 1). A step costs about four of a Newton method on few points, hardly more than one on many.
 //!
 //! # Failure modes
