@@ -75,32 +75,32 @@ impl NearFront<'_> {
         crack: impl Fn(usize) -> (Nodal<f64>, Point),
         effort: Effort,
     ) -> Vec<(WeightedPoint, Region)> {
-        let least = |all: &mut dyn Iterator<Item = f64>| all.fold(f64::INFINITY, f64::min);
+        let nearest = |fronts: &[&TipFrame], x: &Point| {
+            (fronts.iter()).fold(f64::INFINITY, |least, f| least.min(f.distance(x)))
+        };
         // Farther from the centre than another by a diameter, a front is nowhere in the cell the nearest.
         let centre = self.map.centre();
         let corners = self.map.iter().map(|corner| norm(&sub(corner, &centre)));
-        let from_centre = self.fronts.iter().map(|f| (f.distance(&centre), f));
-        let from_centre: Vec<(f64, &TipFrame)> = from_centre.collect();
-        let reach = least(&mut from_centre.iter().map(|f| f.0)) + 2.0 * corners.fold(0.0, f64::max);
-        let near = || from_centre.iter().filter(|f| f.0 <= reach);
-        let distance = |x: &Point| least(&mut near().map(|f| f.1.distance(x)));
+        let mut near: Vec<&TipFrame> = self.fronts.iter().collect();
+        let reach = nearest(&near, &centre) + 2.0 * corners.fold(0.0, f64::max);
+        near.retain(|f| f.distance(&centre) <= reach);
+        let distance = |x: &Point| nearest(&near, x);
         let nearer = |x: &Point| effort.nearer * distance(x);
         if let Some((front, chord)) = self.sliced(&distance) {
             return self.slices(front, chord, crack, effort.slices);
         }
         match self.parts {
-            [part] if part.sides.is_empty() => graded_cell(self.map, nearer, DEPTH)
-                .into_iter()
-                .map(|p| (p, 0))
-                .collect(),
-            parts => parts
-                .iter()
-                .enumerate()
-                .flat_map(|(region, part)| {
-                    let points = graded_tetrahedra(&part.tetrahedra, nearer, DEPTH);
-                    points.into_iter().map(move |p| (p, region))
-                })
-                .collect(),
+            [part] if part.sides.is_empty() => {
+                let points = graded_cell(self.map, nearer, DEPTH).into_iter();
+                points.map(|p| (p, 0)).collect()
+            }
+            parts => {
+                let of_part = |(region, part): (Region, &Part)| {
+                    let points = graded_tetrahedra(&part.tetrahedra, nearer, DEPTH).into_iter();
+                    points.map(move |p| (p, region))
+                };
+                parts.iter().enumerate().flat_map(of_part).collect()
+            }
         }
     }
 
