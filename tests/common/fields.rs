@@ -11,7 +11,7 @@ use stickslip::run::registry::method;
 use stickslip_methods::{
     ContactState, ContactSystem, Increment, Options, Silent, Status, point_status,
 };
-use stickslip_xfem::contact::surface_point::SurfacePoint;
+use stickslip_xfem::contact::surface_point::{Side, SurfacePoint};
 use stickslip_xfem::cut::crack::Geometry;
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::exact::Field;
@@ -271,11 +271,13 @@ pub fn surface(body: &Body, n: usize) -> Vec<SurfacePoint> {
             };
             points.push(SurfacePoint {
                 crack: crack.number,
-                cell,
-                xi: mesh.map(cell).inverse(&x).unwrap(),
                 x,
                 weight: w * (to - from),
-                regions: partition.faces[0].parts,
+                sides: partition.faces[0].sides.map(|(_, region)| Side {
+                    cell,
+                    xi: mesh.map(cell).inverse(&x).unwrap(),
+                    region,
+                }),
                 frame: crack.frame(&x),
                 shares,
             });

@@ -243,7 +243,7 @@ fn the_jump_fit_is_exact_where_the_branch_functions_are_complete() {
         let samples = || {
             surface
                 .iter()
-                .filter(|p| own.contains(&p.cell))
+                .filter(|p| own.contains(&p.sides[0].cell))
                 .map(|p| JumpSample {
                     distance: norm(&sub(&p.x, &tip.position)),
                     jump: p.jump(&body.integrator(), &now.u),

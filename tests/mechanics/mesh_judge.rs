@@ -64,7 +64,7 @@ fn carried(body: &mut Body) -> &mut SurfacePoint {
 fn every_planted_fault_is_told() {
     let faults: [(&str, Plant); 6] = [
         ("partition", |b| carried(b).weight *= 1.0 + FAULT),
-        ("side", |b| carried(b).regions.reverse()),
+        ("side", |b| carried(b).sides.reverse()),
         ("orientation", |b| {
             let n = &mut carried(b).frame[0];
             *n = n.map(|v| -v);

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::cut::crack::{Crack, Geometry, on_crack};
 use crate::cut::is_split;
 use crate::cut::off_facets::AlongFacet;
-use crate::cut::part::Part;
+use crate::cut::part::{Part, Place, Region};
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
 use crate::cut::trace::{Trace, TraceError};
@@ -27,9 +27,9 @@ use crate::geometry::{Point, mean};
 use crate::mesh::cell::{CellMap, MOST_NODES};
 use crate::mesh::{Lengths, Mesh};
 
-use self::basis::{ABSENT, Function, FunctionKind, Region, STEP};
+use self::basis::{ABSENT, Function, FunctionKind, STEP};
 pub use self::error::EnrichmentError;
-use self::supports::{Pieces, Place, support_pieces};
+use self::supports::{Pieces, support_pieces};
 use self::tips::Tips;
 use self::tips::corners::Corner;
 pub use self::zone::Zone;
@@ -282,11 +282,21 @@ impl Enrichment {
         if own.is_empty() { &STANDARD } else { own }
     }
 
-    /// Constant of a function in a region of a cell, 0 if it does not live there.
-    pub fn step(&self, cell: usize, region: Region, function: usize) -> f64 {
+    /// Constant of a function in a region of a cell; where it does not live 0, of a branch function [`ABSENT`].
+    pub fn step(&self, (cell, region): Place, function: usize) -> f64 {
         let functions = self.cell(cell);
         let place = functions.iter().position(|&f| f as usize == function);
-        place.map_or(0.0, |i| self.steps(cell)[region * functions.len() + i])
+        let none = [0.0, ABSENT][usize::from(self.is_branch(function))];
+        place.map_or(none, |i| self.steps(cell)[region * functions.len() + i])
+    }
+
+    /// Constants of a function on side 1 and side 2 of a face, if they differ: what jumps there. Functions of nodes that only one
+    /// cell has vanish on the facet between two.
+    pub fn step_across(&self, sides: [Place; 2], function: usize) -> Option<[f64; 2]> {
+        let node = self.functions[function].node;
+        let shared = sides.iter().all(|side| self.cell(side.0).contains(&node));
+        let [one, two] = sides.map(|side| self.step(side, function));
+        (shared && one != two).then_some([one, two])
     }
 
     /// Enriched functions of a node.

@@ -91,14 +91,13 @@ fn jump_terms(
         let [from, to] = [p, q].map(|end| norm(&sub(x, end)));
         vec![(nodes[0], to / (from + to)), (nodes[1], from / (from + to))]
     };
-    let (cell, regions) = corner.place;
     let mut terms = Vec::new();
     for &(node, share) in &shares {
         for f in enrichment.enriched_of(node as usize) {
             let coefficient = match enrichment.functions[f].kind {
                 FunctionKind::Piece { .. } => {
-                    let [one, two] = regions.map(|region| enrichment.step(cell, region, f));
-                    share * (one - two)
+                    let steps = enrichment.step_across(corner.sides, f);
+                    steps.map_or(0.0, |[one, two]| share * (one - two))
                 }
                 FunctionKind::Branch { tip, order: 0 } => {
                     let frame = &enrichment.tips[tip as usize];

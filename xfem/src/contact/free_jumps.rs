@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::PathVertex;
+use crate::cut::part::Place;
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
+use crate::enrichment::basis::{ABSENT, FunctionKind};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
 use crate::geometry::tip_frame::FrontShape;
 use crate::geometry::{Point, norm, root, sub};
@@ -60,11 +61,16 @@ impl<'a> FreeJumps<'a> {
         jumps
     }
 
+    /// Nodes whose functions do not vanish on a facet: those that its cells share.
+    fn nodes_of(&self, facet: &Facet) -> impl Iterator<Item = u32> + use<'a> {
+        let [one, two] = facet.sides.map(|side| self.integrator.mesh.cell(side.0));
+        one.iter().copied().filter(|node| two.contains(node))
+    }
+
     /// Functions that jump across a facet.
     fn jumping_on(&self, facet: &Facet) -> impl Iterator<Item = usize> {
-        let place = (facet.cell, facet.regions);
-        let nodes = self.integrator.mesh.cell(facet.cell).iter();
-        nodes.flat_map(move |&n| self.jumping(n, place))
+        let (nodes, sides) = (self.nodes_of(facet), facet.sides);
+        nodes.flat_map(move |n| self.jumping(n, sides))
     }
 
     /// Functions that jump where no multiplier of the crack can be: on a stretch of it without a free jump, beside supports
@@ -85,21 +91,18 @@ impl<'a> FreeJumps<'a> {
         bare.flat_map(|facet| self.jumping_on(facet)).collect()
     }
 
-    /// Functions of a node that jump at a place of the crack.
-    fn jumping(&self, node: u32, (cell, regions): (usize, [Region; 2])) -> Vec<usize> {
+    /// Functions of a node that jump between two places.
+    fn jumping(&self, node: u32, sides: [Place; 2]) -> Vec<usize> {
         let CellIntegrator {
             enrichment, cracks, ..
         } = self.integrator;
         let jumps = |f: &usize| match enrichment.functions[*f].kind {
-            FunctionKind::Piece { .. } => {
-                let [one, two] = regions.map(|region| enrichment.step(cell, region, *f));
-                one != two
-            }
+            FunctionKind::Piece { .. } => enrichment.step_across(sides, *f).is_some(),
             FunctionKind::Branch { tip, order: 0 } => {
                 let frame = &enrichment.tips[tip as usize];
-                let lives = |region| enrichment.step(cell, region, *f) != ABSENT;
+                let lives = |side| enrichment.step(side, *f) != ABSENT;
                 cracks[self.index].jumps_with(frame, &cracks[frame.crack])
-                    && regions.into_iter().all(lives)
+                    && sides.into_iter().all(lives)
             }
             _ => false,
         };
@@ -109,21 +112,20 @@ impl<'a> FreeJumps<'a> {
             .collect()
     }
 
-    /// Copies of a node on both sides of a place of the crack, if it jumps there and is free to; 0: its own.
-    fn jump(&self, node: u32, place: (usize, [Region; 2])) -> Option<[usize; 2]> {
+    /// Copies of a node on both sides of the crack, if it jumps there and is free to; 0: its own.
+    fn jump(&self, node: u32, sides: [Place; 2]) -> Option<[usize; 2]> {
         let enrichment = self.integrator.enrichment;
-        let (cell, regions) = place;
         let mut copies = [0, 0];
         for (k, f) in enrichment.enriched_of(node as usize).enumerate() {
             if let FunctionKind::Piece { .. } = enrichment.functions[f].kind {
-                for (copy, region) in copies.iter_mut().zip(regions) {
-                    if enrichment.step(cell, region, f) != 0.0 {
+                for (copy, side) in copies.iter_mut().zip(sides) {
+                    if enrichment.step(side, f) != 0.0 {
                         *copy = k + 1;
                     }
                 }
             }
         }
-        let mut jumping = self.jumping(node, place).into_iter();
+        let mut jumping = self.jumping(node, sides).into_iter();
         jumping.any(|f| self.free.contains(&f)).then_some(copies)
     }
 
@@ -142,7 +144,7 @@ impl<'a> FreeJumps<'a> {
                 return None;
             }
             let mut free = |node: u32| {
-                let [one, two] = self.jump(node, corner.place)?;
+                let [one, two] = self.jump(node, corner.sides)?;
                 let next = numbers.len() as u32;
                 let pair = [one.min(two), one.max(two)];
                 Some(*numbers.entry((node, pair)).or_insert(next))
@@ -188,7 +190,7 @@ impl<'a> FreeJumps<'a> {
 
     /// Whether anything free jumps on a facet.
     pub fn jumps_on(&self, facet: &Facet) -> bool {
-        let mut nodes = self.integrator.mesh.cell(facet.cell).iter();
-        nodes.any(|&n| self.jump(n, (facet.cell, facet.regions)).is_some())
+        let mut nodes = self.nodes_of(facet);
+        nodes.any(|n| self.jump(n, facet.sides).is_some())
     }
 }

@@ -18,15 +18,15 @@ use std::collections::btree_map::{BTreeMap, Entry};
 use rayon::prelude::*;
 
 use crate::cut::crack::ON_CRACK;
+use crate::cut::part::Place;
 use crate::cut::placement::reference_position;
-use crate::enrichment::basis::Region;
 use crate::geometry::{Point, dot};
 use crate::quadrature;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 use crate::stiffness::stress::CellStress;
 
 use super::pairs::ContactPoint;
-use super::surface_point::SurfacePoint;
+use super::surface_point::{Side, SurfacePoint};
 
 /// A cell touches a point within this, in units of its diagonal: above rounding, below the shortest distance of a crossed
 /// edge's point from a node that the crack does not run through.
@@ -34,10 +34,7 @@ const TOUCHES: f64 = 0.1 * ON_CRACK;
 
 /// A part of the body at a contact point: a whole cell, or one side of a cut cell.
 struct Part {
-    cell: usize,
-    /// Reference position of the point in the cell.
-    xi: Point,
-    region: Region,
+    side: Side,
     /// Volume [m³] or area [m²].
     measure: f64,
 }
@@ -62,28 +59,23 @@ pub fn integrated_rows(
     quadrature: &[SurfacePoint],
 ) -> Result<Vec<Vec<(usize, f64)>>, CellError> {
     let dim = integrator.mesh.dim();
-    let mut measures: BTreeMap<(usize, [Region; 2]), [f64; 2]> = BTreeMap::new();
+    let mut measures: BTreeMap<Place, f64> = BTreeMap::new();
     let mut known: BTreeMap<usize, CellStress<'_>> = BTreeMap::new();
     let mut rows = vec![BTreeMap::new(); count * dim];
     for q in quadrature {
-        let [m1, m2] = *measures
-            .entry((q.cell, q.regions))
-            .or_insert_with(|| q.regions.map(|region| measure(integrator, q.cell, region)));
-        let stress = match known.entry(q.cell) {
-            Entry::Occupied(own) => own.into_mut(),
-            Entry::Vacant(place) => place.insert(integrator.stress(q.cell)?),
-        };
-        for (region, share) in q.regions.into_iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
-            let part = Part {
-                cell: q.cell,
-                xi: q.xi,
-                region,
-                measure: share,
+        let [m1, m2] = q.places().map(|side| {
+            let known = measures.entry(side);
+            *known.or_insert_with(|| measure(integrator, side))
+        });
+        for (side, share) in q.sides.iter().zip([m1 / (m1 + m2), m2 / (m1 + m2)]) {
+            let stress = match known.entry(side.cell) {
+                Entry::Occupied(own) => own.into_mut(),
+                Entry::Vacant(place) => place.insert(integrator.stress(side.cell)?),
             };
             for &(k, value) in &q.shares {
                 let own = &mut rows[k as usize * dim..(k as usize + 1) * dim];
                 let factor = -q.weight * value * share;
-                add_stress(stress, &part, &q.x, &q.frame, factor, own);
+                add_stress(stress, side, &q.x, &q.frame, factor, own);
             }
         }
     }
@@ -125,10 +117,8 @@ fn parts(
             });
             if !apart {
                 parts.push(Part {
-                    cell,
-                    xi,
-                    region,
-                    measure: measure(integrator, cell, region),
+                    side: Side { cell, xi, region },
+                    measure: measure(integrator, (cell, region)),
                 });
             }
         }
@@ -140,7 +130,7 @@ fn parts(
 }
 
 /// Measure of a whole cell, or of one region of a cut one.
-fn measure(integrator: &CellIntegrator<'_>, cell: usize, region: Region) -> f64 {
+fn measure(integrator: &CellIntegrator<'_>, (cell, region): Place) -> f64 {
     match integrator.enrichment.partition(cell) {
         Some(partition) => {
             let points = partition.parts[region].points();
@@ -160,9 +150,9 @@ fn point_rows(
     let mut rows = vec![BTreeMap::<usize, f64>::new(); integrator.mesh.dim()];
     for part in parts.iter().filter(|p| p.measure > 0.0) {
         let factor = -point.weight * part.measure / total;
-        let mut stress = integrator.stress(part.cell)?;
+        let mut stress = integrator.stress(part.side.cell)?;
         let (x, frame) = (&point.x, &point.frame);
-        add_stress(&mut stress, part, x, frame, factor, &mut rows);
+        add_stress(&mut stress, &part.side, x, frame, factor, &mut rows);
     }
     Ok(rows
         .into_iter()
@@ -170,16 +160,16 @@ fn point_rows(
         .collect())
 }
 
-/// rows += factor · F σ n of a part at x.
+/// rows += factor · F σ n at x.
 fn add_stress(
     stress: &mut CellStress<'_>,
-    part: &Part,
+    side: &Side,
     x: &Point,
     frame: &[Point; 3],
     factor: f64,
     rows: &mut [BTreeMap<usize, f64>],
 ) {
-    for (unknown, t) in stress.tractions(&part.xi, x, part.region, &frame[0]) {
+    for (unknown, t) in stress.tractions(&side.xi, x, side.region, &frame[0]) {
         for (row, e) in rows.iter_mut().zip(frame) {
             let value = dot(e, &t);
             if value != 0.0 {

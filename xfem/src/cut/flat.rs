@@ -10,6 +10,7 @@ use crate::geometry::clip::Side;
 use crate::geometry::polygon::{self, Polygon};
 use crate::geometry::{Point, add_scaled, cross, dot, sub, unit};
 use crate::mesh::Mesh;
+use crate::mesh::cell::CellMap;
 
 use self::pending::Pending;
 use super::crack::Crack;
@@ -92,7 +93,7 @@ pub fn divide(
             division.extend(chain)?;
         }
     }
-    let mut partition = division.finish(&mesh.map(cell))?;
+    let mut partition = division.finish(cell, &mesh.map(cell))?;
     let lost = dropped.iter().chain(&pending).flat_map(|chain| &chain.arms);
     partition.dropped = lost.map(|arm| arm.0).collect();
     Ok(partition)
@@ -398,7 +399,7 @@ impl Division {
     }
 
     /// The parts and faces.
-    fn finish(self, map: &crate::mesh::cell::CellMap) -> Result<Partition, PartitionError> {
+    fn finish(self, cell: usize, map: &CellMap) -> Result<Partition, PartitionError> {
         // A polygon lies to the left of its edges.
         let left_of = |from: &Point, to: &Point| {
             let runs = |r: &Region| polygon::edges(&r.polygon).any(|(p, q)| p == *from && q == *to);
@@ -418,7 +419,7 @@ impl Division {
                 faces.push(Face {
                     crack: segment.arm,
                     corners: vec![(*a, self.local(a)), (*b, self.local(b))],
-                    parts: [one, two],
+                    sides: [(cell, one), (cell, two)],
                 });
             }
         }

@@ -10,6 +10,12 @@ use crate::mesh::cell::CellMap;
 use crate::quadrature::rational::rational_points;
 use crate::quadrature::{WeightedPoint, tetrahedron, triangle};
 
+/// Number of a part of a cell, see [`super::partition`]; 0 in a cell that no crack cuts.
+pub type Region = usize;
+
+/// A region of a cell.
+pub type Place = (usize, Region);
+
 /// A part of a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Part {
@@ -86,15 +92,15 @@ impl Part {
 /// A corner of a face: position, and the local nodes of the mesh edge it lies on (equal at a node; `None` inside the cell).
 pub type FaceCorner = (Point, Option<[usize; 2]>);
 
-/// A piece of a crack between two parts.
+/// A piece of a crack between two regions, of one cell or of two.
 #[derive(Debug, Clone)]
 pub struct Face {
     /// Crack.
     pub crack: usize,
     /// Two corners along the crack (2D), or a convex polygon in cyclic order.
     pub corners: Vec<FaceCorner>,
-    /// Parts on side 1 and side 2.
-    pub parts: [usize; 2],
+    /// Places on side 1 and side 2.
+    pub sides: [Place; 2],
 }
 
 impl Face {

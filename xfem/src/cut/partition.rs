@@ -52,14 +52,12 @@ impl Partition {
         inside: &[usize],
         ending: &[usize],
     ) -> Self {
-        let map = mesh.map(cell);
-        let mut whole = Partition::whole(&map);
+        let mut whole = Partition::whole(&mesh.map(cell));
         for &index in inside {
-            let phi = cracks[index].cell_phi(mesh, cell);
-            whole.divide_solid(index, cracks, &map, &phi);
+            whole.divide_solid(index, cracks, mesh, cell);
         }
         let pairs = whole.faces.iter().filter(|f| ending.contains(&f.crack));
-        whole.joined = pairs.map(|f| f.parts).collect();
+        whole.joined = pairs.map(|f| f.sides.map(|side| side.1)).collect();
         whole
     }
 
@@ -100,8 +98,9 @@ impl Partition {
     }
 
     /// Cuts the tetrahedra on which a planar crack lives.
-    fn divide_solid(&mut self, index: usize, cracks: &[Crack], map: &CellMap, phi: &[f64]) {
+    fn divide_solid(&mut self, index: usize, cracks: &[Crack], mesh: &Mesh, cell: usize) {
         let crack = &cracks[index];
+        let (map, phi) = (mesh.map(cell), crack.cell_phi(mesh, cell));
         let level = |x: &Point| {
             // The nodes' own values, so that a node on the crack stays on it.
             let node = map.iter().position(|c| c == x);
@@ -133,26 +132,26 @@ impl Partition {
         let lower = |part: usize| halves.get(part).copied().flatten();
         let mut faces = Vec::new();
         for face in std::mem::take(&mut self.faces) {
-            if face.parts.iter().all(|&p| lower(p).is_none()) {
+            if face.sides.iter().all(|side| lower(side.1).is_none()) {
                 faces.push(face);
                 continue;
             }
             for side in [1.0, -1.0] {
                 let corners = clip_face(&face.corners, level, side);
                 if corners.len() > 2 {
-                    let parts = face.parts.map(|p| match lower(p) {
-                        Some(lower) if side < 0.0 => lower,
-                        _ => p,
+                    let sides = face.sides.map(|own| match lower(own.1) {
+                        Some(lower) if side < 0.0 => (own.0, lower),
+                        _ => own,
                     });
                     faces.push(Face {
                         crack: face.crack,
                         corners,
-                        parts,
+                        sides,
                     });
                 }
             }
         }
-        let crossings = crossings(map, phi).into_iter();
+        let crossings = crossings(&map, &phi).into_iter();
         let facet = cyclic(crossings.map(|(x, nodes)| (x, Some(nodes))).collect());
         // Its own face, clipped to every part it divides by the cracks that divide those from each other.
         for (host, half) in halves.iter().enumerate() {
@@ -165,7 +164,7 @@ impl Partition {
                 faces.push(Face {
                     crack: index,
                     corners: polygon,
-                    parts: [host, lower],
+                    sides: [(cell, host), (cell, lower)],
                 });
             }
         }

@@ -49,6 +49,3 @@ pub struct Function {
     /// Kind.
     pub kind: FunctionKind,
 }
-
-/// Number of a part of a cell, see [`crate::cut::partition`]; 0 in a cell that no crack cuts.
-pub type Region = usize;

@@ -1,7 +1,7 @@
 //! Edges and facets of a cell, divided among its regions.
 
 use crate::cut::crack::Crack;
-use crate::cut::part::Part;
+use crate::cut::part::{Part, Region};
 use crate::cut::partition::Partition;
 use crate::geometry::clip::{Side, clip, rounding, snapped};
 use crate::geometry::polygon::{border_distance, contains};
@@ -9,7 +9,6 @@ use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
-use super::basis::Region;
 
 /// A piece of an edge (two points) or facet (a polygon), and the region of the cell it bounds.
 pub type Piece = (Vec<Point>, Region);

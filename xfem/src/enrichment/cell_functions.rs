@@ -3,13 +3,14 @@
 use std::array::from_fn;
 use std::mem::take;
 
+use crate::cut::part::Region;
 use crate::geometry::tip_frame::TipFrame;
-use crate::geometry::{Point, Points, sub};
+use crate::geometry::{Point, Points};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
 use super::Enrichment;
-use super::basis::{ABSENT, FunctionKind, Region};
+use super::basis::{ABSENT, FunctionKind};
 
 /// One scalar function of one cell.
 #[derive(Debug, Clone, Copy)]
@@ -215,12 +216,6 @@ impl<'a> CellFunctions<'a> {
             }
         }
         (v, h)
-    }
-
-    /// Jump u₁ − u₂ between two regions at ξ (position x), from all unknowns [m].
-    pub fn jump(&mut self, xi: &Point, x: &Point, regions: [Region; 2], u: &[f64]) -> Point {
-        let [one, two] = regions.map(|region| self.field(xi, x, region, u).0);
-        sub(&one, &two)
     }
 }
 

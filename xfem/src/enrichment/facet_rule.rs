@@ -4,6 +4,7 @@ use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::ellipse::Ellipse;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::mesh::Mesh;
+use crate::mesh::cell::CellMap;
 use crate::quadrature::front::FrontPiece;
 use crate::quadrature::front_facet::front_facet_points;
 use crate::quadrature::graded::{graded_segment, graded_triangles};
@@ -28,7 +29,7 @@ pub struct FacetPoint {
 /// Tips farther away than this from a segment, in its lengths, leave a smooth function on it.
 const NEAR: f64 = 2.0;
 
-/// Rule of one facet of a crack by what lives in its cell.
+/// Rule of one facet of a crack by what lives in its cells.
 pub fn facet_points(
     mesh: &Mesh,
     crack: &Crack,
@@ -36,17 +37,21 @@ pub fn facet_points(
     facets: &CrackFacets,
     facet: &Facet,
 ) -> Vec<FacetPoint> {
-    let map = mesh.map(facet.cell);
+    let cells = facet.sides.map(|side| side.0);
+    let maps = cells.map(|cell| mesh.map(cell));
     let polygon = facets.polygon(facet);
-    let affine = map.is_affine();
-    let branch = enrichment.has_branch(facet.cell);
+    let affine = maps.iter().all(CellMap::is_affine);
+    let branch = cells.iter().any(|&cell| enrichment.has_branch(cell));
     if let &[p, q] = polygon.as_slice() {
         let near = NEAR * norm(&sub(&q, &p));
         let tips = || enrichment.singular_points_near(&[p, q], near);
         let integrand = match (branch, affine) {
             (true, _) => Integrand::Root(tips()),
             (false, true) => Integrand::Polynomial,
-            (false, false) => Integrand::Rational(rational_order(&map, [&p, &q])),
+            (false, false) => {
+                let [one, two] = maps.each_ref().map(|map| rational_order(map, [&p, &q]));
+                Integrand::Rational(one.max(two))
+            }
         };
         return segment_points(&[p, q], integrand);
     }

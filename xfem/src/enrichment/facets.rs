@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::cut::crack::{Crack, Geometry};
-use crate::cut::part::Face;
+use crate::cut::part::{Face, Place};
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::space_area;
@@ -11,7 +11,6 @@ use crate::geometry::{Point, add_scaled, norm, sub, unit};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
-use super::basis::Region;
 
 /// Corner of facets.
 #[derive(Debug, Clone, Copy)]
@@ -20,19 +19,17 @@ pub struct Corner {
     pub x: Point,
     /// Ends of the mesh edge it lies on, lower number first; equal at a node; `None` inside a cell.
     pub nodes: Option<[u32; 2]>,
-    /// A cell there, and its regions on side 1 and side 2.
-    pub place: (usize, [Region; 2]),
+    /// Places there on side 1 and side 2.
+    pub sides: [Place; 2],
 }
 
-/// A piece of a crack inside one cell, between two of its regions.
+/// A piece of a crack between two regions, of one cell or of two.
 #[derive(Debug, Clone)]
 pub struct Facet {
-    /// Cell.
-    pub cell: usize,
     /// Corners: two along the crack (2D) or a convex polygon in cyclic order.
     pub corners: Vec<usize>,
-    /// Regions of the cell on side 1 and side 2.
-    pub regions: [Region; 2],
+    /// Places on side 1 and side 2.
+    pub sides: [Place; 2],
     /// Frame n, a, b of the piece itself: a bent 2D crack is a chain of chords.
     pub frame: [Point; 3],
     /// The cell that a 3D front cut the piece from.
@@ -106,7 +103,7 @@ impl CrackFacets {
                     .map(|&(x, on)| Corner {
                         x,
                         nodes: on.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]),
-                        place: (cell, face.parts),
+                        sides: face.sides,
                     })
                     .collect();
                 let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
@@ -137,9 +134,8 @@ impl CrackFacets {
                     })
                     .collect();
                 found.facets.push(Facet {
-                    cell,
                     corners,
-                    regions: face.parts,
+                    sides: face.sides,
                     frame,
                     front,
                 });
@@ -169,7 +165,7 @@ impl CrackFacets {
         self.corners.push(Corner {
             x: add_scaled(&x, low / (low - high), &sub(&y, &x)),
             nodes: None,
-            place: (facet.cell, facet.regions),
+            sides: facet.sides,
         });
         (self.facets[index].corners[1], rest.corners[0]) = (middle, middle);
         self.facets.push(rest);
@@ -222,8 +218,8 @@ fn inside_front(polygon: &[Corner], psi: impl Fn(&Point) -> f64) -> Option<Clipp
     let corners: Vec<(Corner, f64)> = polygon.iter().copied().zip(values.clone()).collect();
     let inside = clip_with(&corners, &values, -1.0, |i, j| {
         let x = bent_crossing(&polygon[i].x, values[i], &polygon[j].x, &psi);
-        let (nodes, place) = (None, polygon[i].place);
-        (Corner { x, nodes, place }, 0.0)
+        let (nodes, sides) = (None, polygon[i].sides);
+        (Corner { x, nodes, sides }, 0.0)
     });
     let part: Vec<Corner> = inside.iter().map(|c| c.0).collect();
     let places: Vec<Point> = part.iter().map(|corner| corner.x).collect();

@@ -12,6 +12,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::{Crack, HAIR, first_on};
+use crate::cut::part::Place;
 use crate::cut::partition::Partition;
 use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
@@ -20,14 +21,10 @@ use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 use crate::quadrature::measure;
 
-use super::basis::Region;
 use super::cell_facets::clipped;
 
 /// A node's own piece no region of which is larger than this part of a cell is no longer its own: the largest piece is.
 const SLIVER: f64 = 1e-9;
-
-/// A region of a cell.
-pub type Place = (usize, Region);
 
 /// The pieces of the supports of nodes beyond the node's own, by node: the regions of each.
 pub type Pieces = BTreeMap<u32, Vec<Vec<Place>>>;
@@ -126,10 +123,11 @@ pub fn parted_from(
     }
     for (cell, partition) in divided() {
         let faces = partition.faces.iter().filter(|f| own(f.crack));
-        let pairs = faces
-            .map(|f| f.parts)
-            .chain(partition.joined.iter().copied());
-        pairs.for_each(|pair| join(pair.map(|region| (cell, region))));
+        let faces = faces.map(|f| f.sides);
+        let within = faces.filter(|sides| sides.iter().all(|side| cells.contains(&side.0)));
+        let joined = partition.joined.iter();
+        let joined = joined.map(|pair| pair.map(|region| (cell, region)));
+        within.chain(joined).for_each(&mut join);
     }
     let near = |&&(cell, region): &&Place| {
         let map = mesh.map(cell);

@@ -8,12 +8,11 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use crate::cut::crack::{Crack, Geometry};
+use crate::cut::part::Place;
 use crate::geometry::ellipse::Ellipse;
 use crate::geometry::tip_frame::TipFrame;
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
-
-use super::supports::Place;
 
 /// Nodes around a tip.
 #[derive(Debug, Clone, Default)]

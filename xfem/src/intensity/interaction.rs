@@ -112,7 +112,9 @@ pub fn interaction(
     }
     let range = cells.first()..=cells.last();
     let in_domain = |c: &usize| range.contains(&Some(c)) && cells.binary_search(c).is_ok();
-    let own_faces = fields.faces.iter().filter(|(p, _)| in_domain(&p.cell));
+    // On a face with one side in the domain q is 0.
+    let both = |p: &SurfacePoint| p.sides.iter().all(|side| in_domain(&side.cell));
+    let own_faces = fields.faces.iter().filter(|(p, _)| both(p));
     let bends = |(p, _): &(&SurfacePoint, Point)| {
         let away = sub(&p.x, &tip.position);
         dot(&away, &tip.normal).abs() > STRAIGHT * norm(&away)
@@ -157,7 +159,8 @@ pub fn interaction(
     let add = |total: [f64; 2], part: [f64; 2]| [0, 1].map(|k| total[k] + part[k]);
     let mut total = parts.into_iter().fold([0.0; 2], add);
     for (point, traction) in own_faces {
-        let (q, _) = weight(mesh, point.cell, &inside, &point.xi);
+        let side = &point.sides[0]; // q is continuous
+        let (q, _) = weight(mesh, side.cell, &inside, &side.xi);
         for (sum, mode) in total.iter_mut().zip(&modes) {
             let [one, two] = [1.0, -1.0].map(|side| ahead(&mode.at(&point.x, Some(side)).1, tip));
             *sum -= point.weight * q * dot(traction, &sub(&one, &two));

@@ -8,7 +8,7 @@
 //! and edges what lies in the region of the load.
 
 use crate::contact::pairs::ContactPoint;
-use crate::enrichment::basis::Region as CellRegion;
+use crate::cut::part::Region as CellRegion;
 use crate::enrichment::cell_facets::{Piece, pieces};
 use crate::geometry::clip::fan;
 use crate::geometry::{Point, cross, dot, norm, sub};

@@ -3,7 +3,7 @@
 //! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
 
 use crate::cut::crack::{Crack, Tip};
-use crate::enrichment::basis::Region;
+use crate::cut::part::Region;
 use crate::geometry::clip::Side;
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::{Point, add_scaled, dot};

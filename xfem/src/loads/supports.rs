@@ -13,8 +13,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::contact::free_jumps::FreeJumps;
 use crate::cut::crack::{Crack, HAIR, first_on};
+use crate::cut::part::Region as CellRegion;
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::{FunctionKind, Region as CellRegion, STEP};
+use crate::enrichment::basis::{FunctionKind, STEP};
 use crate::enrichment::cell_facets::pieces;
 use crate::geometry::clip::Side;
 use crate::geometry::{Point, diameter, mean, norm, sub};
@@ -453,7 +454,7 @@ fn at_rest(support: usize) -> Prescribed {
 fn copy_at(enrichment: &Enrichment, node: usize, cell: usize, region: CellRegion) -> usize {
     let mut pieces = enrichment.pieces_of(node);
     pieces
-        .find(|&f| enrichment.step(cell, region, f) != 0.0)
+        .find(|&f| enrichment.step((cell, region), f) != 0.0)
         .unwrap_or(node)
 }
 

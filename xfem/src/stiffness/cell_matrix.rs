@@ -12,10 +12,9 @@
 //! function.
 
 use crate::cut::crack::Crack;
-use crate::cut::part::Part;
+use crate::cut::part::{Part, Region};
 use crate::cut::partition::Partition;
 use crate::enrichment::Enrichment;
-use crate::enrichment::basis::Region;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::CrackFacets;
 use crate::geometry::clip::Side;

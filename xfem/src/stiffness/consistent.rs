@@ -14,8 +14,9 @@
 use std::array::from_fn;
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::cut::part::Region;
 use crate::cut::partition::Partition;
-use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
+use crate::enrichment::basis::{ABSENT, FunctionKind};
 use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
@@ -244,7 +245,7 @@ impl CellIntegrator<'_> {
         Ok(moments)
     }
 
-    /// Visits the points of the facets in a cell that jumps are integrated with: point, regions on side 1 and 2, normal.
+    /// Visits the points of the facets inside a cell, not those on its border, that jumps are integrated with: point, regions, normal.
     fn facet_points(
         &self,
         cell: usize,
@@ -258,10 +259,11 @@ impl CellIntegrator<'_> {
         for index in cracks {
             let crack = &self.cracks[index];
             let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
-            for facet in &facets.facets {
+            let all = facets.facets.iter();
+            for facet in all.filter(|facet| facet.sides.iter().all(|side| side.0 == cell)) {
                 for p in facet_points(self.mesh, crack, self.enrichment, &facets, facet) {
                     let point = WeightedPoint::new(p.x, p.weight);
-                    visit(&point, facet.regions, &facet.frame[0])?;
+                    visit(&point, facet.sides.map(|side| side.1), &facet.frame[0])?;
                 }
             }
         }

@@ -20,7 +20,8 @@
 //! these two besides the constant, as Legrain et al. enrich the pressure: θ = Σ_m q_m ∫_r q_m tr ε with q_m orthonormal. Only
 //! close to the tip: farther away they differ from constants by too little to be missed.
 
-use crate::enrichment::basis::{ABSENT, FunctionKind, Region};
+use crate::cut::part::Region;
+use crate::enrichment::basis::{ABSENT, FunctionKind};
 use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};

@@ -8,8 +8,7 @@
 //!
 //! Halving resolves a front at a distance d of the cell with about 1/d parts, slices with as many at any distance.
 
-use crate::cut::part::Part;
-use crate::enrichment::basis::Region;
+use crate::cut::part::{Part, Region};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};

@@ -1,7 +1,7 @@
 //! The stress of a cell, region by region, as its stiffness has it: assumed, of the gradient, or with the mean dilatation.
 //! Whoever wants a stress asks here.
 
-use crate::enrichment::basis::Region;
+use crate::cut::part::Region;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::geometry::{Point, add_scaled, dot};
 use crate::material::{Dilatation, Lame, strain};

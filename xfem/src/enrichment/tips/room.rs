@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use crate::cut::crack::Tip;
+use crate::cut::part::Place;
 use crate::cut::trace::TracedTip;
 use crate::geometry::Point;
 use crate::geometry::boxes::around;
 use crate::geometry::polygon::{self, segment_distance};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 
-use super::super::supports::{Place, parted_from};
+use super::super::supports::parted_from;
 use super::super::zone::Zone;
 use super::{GRAZING, SHARE, Search};
 
