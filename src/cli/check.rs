@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use stickslip_xfem::cut::arms::Joined;
+use stickslip_xfem::cut::arrangement::Moved;
 use stickslip_xfem::enrichment::Zone;
 use stickslip_xfem::geometry::{norm, sub};
 
@@ -23,6 +23,9 @@ use crate::studies::measure::RunError;
 /// Digits shown, and below which part of the largest entry a sum is rounding.
 const DIGITS: usize = 6;
 const ROUNDING: f64 = 1e-9;
+
+/// Cracks moved by more than this are told, in shortest edges.
+const TOLD: f64 = 1e-9;
 
 /// Arguments of `stickslip check`.
 #[derive(Debug, clap::Args)]
@@ -53,7 +56,10 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
                 radii(&body.enrichment.zones),
                 cost(&body, frictions.len() * case.path.increments)
             )];
-            lines.extend(body.joined.iter().map(|joined| joined_line(&body, joined)));
+            let least = TOLD * body.mesh.smallest_edge();
+            let far = |moved: &&Moved| norm(&sub(&moved.to, &moved.from)) > least;
+            let moved = body.moved.iter().filter(far);
+            lines.extend(moved.map(|moved| moved_line(&body, moved)));
             for (index, per_crack) in frictions.iter().enumerate() {
                 let friction = per_crack.first().copied().unwrap_or(0.0);
                 let loading = Loading::new(&body, &case, friction).map_err(RunError::from)?;
@@ -97,13 +103,18 @@ fn cost(body: &Body, increments: usize) -> String {
     predicted(body, increments).map_or_else(String::new, shown)
 }
 
-fn joined_line(body: &Body, joined: &Joined) -> String {
-    let [from, to] = [&joined.from, &joined.to].map(|x| vector(&body.place(x)[..2]));
-    let by = significant(norm(&sub(&joined.to, &joined.from)), DIGITS);
-    let crack = joined.crack + 1;
-    format!(
-        "    crack {crack}: its end at {from} m is joined with what it nearly touches, at {to} m, {by} m away"
-    )
+fn moved_line(body: &Body, moved: &Moved) -> String {
+    let [from, to] = [&moved.from, &moved.to].map(|x| vector(&body.place(x)[..2]));
+    let by = significant(norm(&sub(&moved.to, &moved.from)), DIGITS);
+    let crack = moved.crack + 1;
+    match moved.joined {
+        true => format!(
+            "    crack {crack}: its end at {from} m is joined with what it nearly touches, at {to} m, {by} m away"
+        ),
+        false => format!(
+            "    crack {crack}: runs through what it nearly touches, at {to} m instead of {from} m, {by} m away"
+        ),
+    }
 }
 
 fn load_line(load: &LoadExtent) -> String {

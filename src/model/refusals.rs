@@ -1,6 +1,7 @@
 //! Faults of a case that only the discretisation finds, told at the place in its file.
 
 use stickslip_methods::MethodError;
+use stickslip_xfem::cut::arrangement::ArrangementError;
 use stickslip_xfem::discretisation::DiscretisationError;
 use stickslip_xfem::enrichment::{Enrichment, EnrichmentError};
 use stickslip_xfem::geometry::crack_shape::CrackShape;
@@ -129,7 +130,12 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
             *crack,
             "cracks that meet in one place, or farther apart than a thousandth of a cell",
         ),
-        EnrichmentError::Overlap(overlap) => (overlap.cracks[1], "cracks that cross or lie apart"),
+        EnrichmentError::Arrangement(ArrangementError::Overlap { cracks, .. }) => {
+            (cracks[1], "cracks that cross or lie apart")
+        }
+        EnrichmentError::Arrangement(ArrangementError::Point { crack, .. }) => {
+            (*crack, "a crack of some cells' length")
+        }
         EnrichmentError::Lost { crack, .. } => {
             (*crack, "a mesh that the crack crosses from cell to cell")
         }

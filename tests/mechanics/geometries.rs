@@ -87,14 +87,12 @@ fn a_piece_held_by_contact_alone_carries_the_load() {
     assert_near(total / pressed, 2.0, 1e-9, total);
 }
 
-/// Goal: where three cracks meet within a thousandth of a cell, but not in one point, and a piece between them is loose, it has
-/// no rigid motion: refused at a crack, with the remedy.
+/// Goal: where three cracks meet within a fifth of a cell, but not in one point, a loose piece between them has its rigid motions.
 #[test]
-fn cracks_that_nearly_meet_in_one_place_are_refused_there() {
+fn a_loose_piece_between_three_crossings_in_a_cell_moves_rigidly() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/nearly_one_place.toml");
     let text = fs::read_to_string(path).unwrap();
-    let error = try_body(&text).map(|_| ()).unwrap_err().to_string();
-    for part in ["points_m", "nearly one place", "thousandth of a cell"] {
-        assert!(error.contains(part), "{error}");
-    }
+    let body = try_body(&text).unwrap();
+    assert!(!body.elastic.floating().is_empty());
+    assert_below(body.checks.uniform, 1e-9, "uniform stress");
 }

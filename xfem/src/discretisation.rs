@@ -11,9 +11,10 @@ use std::time::Instant;
 use crate::contact::pairs::{ContactPoint, ContactSurface, CrackSurface, jump_rows};
 use crate::contact::surface_point::SurfacePoint;
 use crate::contact::{ContactSpace, conforming, facet_samples, traction};
-use crate::cut::arms::{Joined, arms};
+use crate::cut::arrangement::{Arrangement, Moved};
 use crate::cut::crack::{Crack, Tip};
 use crate::cut::off_facets::off_facets;
+use crate::cut::solid_arms::solid_arms;
 use crate::enrichment::pieces::{MotionError, free_motions};
 use crate::enrichment::{Enrichment, EnrichmentError};
 use crate::geometry::crack_shape::CrackShape;
@@ -90,8 +91,8 @@ pub struct Discretisation {
     pub integrated: Vec<bool>,
     /// Jump operator over all unknowns: rows point by point, (n, a[, b]), as (unknown, coefficient).
     pub jump_rows: Vec<Vec<(usize, f64)>>,
-    /// Ends of cracks that were joined with what they nearly touch.
-    pub joined: Vec<Joined>,
+    /// What of cracks is not where it was put.
+    pub moved: Vec<Moved>,
     /// Findings of the tests on the mesh.
     pub checks: MeshChecks,
 }
@@ -139,11 +140,17 @@ pub fn discretise(plan: &Plan<'_>) -> Result<(Discretisation, Reduced), Discreti
     let Placed {
         lengths,
         cracks,
-        joined,
+        arrangement,
+        moved,
         doubled,
     } = place_cracks(&plan.cracks, &mut mesh)?;
     let supports = Supports::new(plan.supports, &mesh)?;
-    let enrichment = Enrichment::new(&mesh, &lengths, &cracks, &supports.beside(&cracks))?;
+    let enrichment = Enrichment::new(
+        &mesh,
+        &lengths,
+        (&cracks, arrangement),
+        &supports.beside(&cracks),
+    )?;
     let integrator = CellIntegrator {
         mesh: &mesh,
         cracks: &cracks,
@@ -200,7 +207,7 @@ pub fn discretise(plan: &Plan<'_>) -> Result<(Discretisation, Reduced), Discreti
         prescribed,
         integrated: spaces.iter().map(|space| space.is_integrated()).collect(),
         jump_rows: jump,
-        joined,
+        moved,
         mesh,
         cracks,
         enrichment,
@@ -316,32 +323,43 @@ fn numbered(kept: impl Iterator<Item = bool>) -> Vec<Option<u32>> {
 struct Placed {
     lengths: Lengths,
     cracks: Vec<Crack>,
-    joined: Vec<Joined>,
+    arrangement: Arrangement,
+    moved: Vec<Moved>,
     doubled: Option<ContactSurface>,
 }
 
 /// The arms of the cracks, and the surface of one that splits the mesh along its facets, if that was asked for.
 fn place_cracks(plan: &[CrackPlan<'_>], mesh: &mut Mesh) -> Result<Placed, EnrichmentError> {
     let lengths = mesh.lengths();
-    let pairs = |crack: &&CrackPlan<'_>| crack.contact == ContactSpace::NodePairs;
-    if let Some(alone) = plan.iter().find(pairs) {
-        let crack = Crack::new(0, alone.shape, alone.tip, mesh, &lengths);
-        let surface = conforming::split(mesh, &crack)?;
-        return Ok(Placed {
-            lengths: mesh.lengths(),
-            cracks: Vec::new(),
-            joined: Vec::new(),
-            doubled: Some(surface),
-        });
-    }
-    let cracks: Vec<_> = plan.iter().map(|crack| (crack.shape, crack.tip)).collect();
-    let cracks = off_facets(mesh, &lengths, &cracks)?;
-    let (cracks, joined) = arms(cracks, mesh, &lengths)?;
+    let shapes: Vec<_> = plan.iter().map(|crack| (crack.shape, crack.tip)).collect();
+    let pairs = |crack: &CrackPlan<'_>| crack.contact == ContactSpace::NodePairs;
+    let pairs = plan.iter().any(pairs);
+    let whole = if mesh.dim() == 3 && !pairs {
+        off_facets(mesh, &lengths, &shapes)?
+    } else {
+        let shapes = shapes.into_iter().enumerate();
+        let new = |(k, (shape, tip))| Crack::new(k, shape, tip, mesh, &lengths);
+        shapes.map(new).collect()
+    };
+    let (mut arrangement, mut cracks) = match mesh.dim() {
+        2 => Arrangement::new(mesh, &lengths, &whole)?,
+        _ => (Arrangement::default(), solid_arms(&whole, mesh)),
+    };
+    let moved = std::mem::take(&mut arrangement.moved);
+    let doubled = match pairs {
+        true => Some(conforming::split(
+            mesh,
+            &std::mem::take(&mut cracks),
+            &std::mem::take(&mut arrangement),
+        )?),
+        false => None,
+    };
     Ok(Placed {
-        lengths,
+        lengths: mesh.lengths(),
         cracks,
-        joined,
-        doubled: None,
+        arrangement,
+        moved,
+        doubled,
     })
 }
 

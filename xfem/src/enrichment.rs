@@ -13,18 +13,17 @@ mod zone;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Geometry, on_crack};
+use crate::cut::arrangement::Arrangement;
+use crate::cut::crack::{Crack, Geometry};
 use crate::cut::is_split;
-use crate::cut::off_facets::AlongFacet;
 use crate::cut::part::{Part, Place, Region};
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
-use crate::cut::trace::{Trace, TraceError};
 use crate::geometry::boxes::{Boxes, around};
-use crate::geometry::clip::{Side, snapped};
+use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
-use crate::mesh::cell::{CellMap, MOST_NODES};
+use crate::mesh::cell::MOST_NODES;
 use crate::mesh::{Lengths, Mesh};
 
 use self::basis::{ABSENT, Function, FunctionKind, STEP};
@@ -53,8 +52,8 @@ pub struct Enrichment {
     singular: (Vec<Point>, Boxes),
     /// Divided cells.
     partitions: BTreeMap<usize, Partition>,
-    /// 2D: where arms cross mesh edges (lower node first) [m].
-    on_edges: BTreeMap<[u32; 2], Vec<Point>>,
+    /// 2D: where the cracks lie.
+    arrangement: Arrangement,
     /// Cells with the end of a crack that are left whole, divided up to it.
     endings: BTreeMap<usize, Partition>,
     cell_ptr: Vec<usize>,
@@ -63,7 +62,7 @@ pub struct Enrichment {
     step_ptr: Vec<usize>,
     steps: Vec<f64>,
     node_ptr: Vec<usize>,
-    /// Nodes with φ = 0 for some crack.
+    /// Nodes on cracks.
     on_crack: BTreeSet<u32>,
     /// Lengths of the mesh.
     pub lengths: Lengths,
@@ -73,7 +72,7 @@ pub struct Enrichment {
 }
 
 impl Enrichment {
-    /// Enriches the nodes around the given arms; none of them may run along cell facets. `beside`: places next to nodes on a
+    /// Enriches the nodes around the given arms; those of a solid may not run along cell facets. `beside`: places next to nodes on a
     /// crack, on the side of it whose piece is the node's own; by default that is side 1.
     ///
     /// # Errors
@@ -81,21 +80,11 @@ impl Enrichment {
     pub fn new(
         mesh: &Mesh,
         lengths: &Lengths,
-        cracks: &[Crack],
+        (cracks, arrangement): (&[Crack], Arrangement),
         beside: &BTreeMap<u32, Point>,
     ) -> Result<Self, EnrichmentError> {
-        let trace = Trace::new(mesh, cracks).map_err(|e| match e {
-            TraceError::AlongEdge(arm, at) => EnrichmentError::AlongFacet(AlongFacet {
-                crack: cracks[arm].number,
-                at,
-            }),
-            TraceError::Lost(arm, at) => EnrichmentError::Lost {
-                crack: cracks[arm].number,
-                at,
-            },
-        })?;
         let tips = match mesh.dim() {
-            2 => Tips::flat(mesh, lengths, cracks, &trace)?,
+            2 => Tips::flat(mesh, lengths, cracks, &arrangement)?,
             _ => Tips::solid(mesh, cracks),
         };
         let divided = tips.partitions.values().chain(tips.endings.values());
@@ -115,7 +104,7 @@ impl Enrichment {
             let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
             own.into_iter().for_each(|crack| cut_by[crack].push(cell));
         }
-        let pieces = support_pieces(mesh, cracks, &trace, &tips.partitions, beside);
+        let pieces = support_pieces(mesh, cracks, &arrangement, &tips, beside);
         let standard = mesh.nodes.len();
         let plain = (0..standard as u32).map(|node| Function {
             node,
@@ -160,12 +149,12 @@ impl Enrichment {
             corners: tips.corners,
             partitions: tips.partitions,
             endings: tips.endings,
-            on_edges: trace.on_edges,
+            arrangement,
             cell_ptr: vec![0],
             cell_functions: Vec::new(),
             step_ptr: vec![0],
             steps: Vec::new(),
-            on_crack: cracks.iter().flat_map(Crack::nodes_on).collect(),
+            on_crack: cracks.iter().flat_map(Crack::nodes_on).copied().collect(),
             lengths: lengths.clone(),
             cut_by,
             standard,
@@ -181,7 +170,6 @@ impl Enrichment {
             let own = pieces.get(&node).and_then(|own| own.get(piece as usize));
             own.is_some_and(|places| places.binary_search(place).is_ok())
         };
-        let rounding = mesh.rounding();
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             let parts: Vec<Option<&Part>> = match self.partitions.get(&cell) {
@@ -205,11 +193,11 @@ impl Enrichment {
                         }
                         // On the crack itself a branch function takes the value of the region's side.
                         FunctionKind::Branch { tip, .. } => {
-                            let crack = &cracks[self.tips[tip as usize].crack];
                             let frame = &self.tips[tip as usize];
-                            let elsewhere = || beside(frame, &mesh.map(cell), rounding);
-                            let of_crack =
-                                |s: &&(usize, Side)| cracks[s.0].jumps_with(frame, crack);
+                            let crack = &cracks[frame.crack];
+                            let elsewhere = || beside(mesh, frame, crack, cell);
+                            let jumps = &self.zones[tip as usize].arms;
+                            let of_crack = |s: &&(usize, Side)| jumps.contains(&s.0);
                             let side = |part: &Option<&Part>| {
                                 part.and_then(|p| p.sides.iter().find(of_crack))
                                     .map(|s| s.1)
@@ -253,10 +241,13 @@ impl Enrichment {
     }
 
     /// Where arms cross a mesh edge (2D) [m].
-    pub fn places_on(&self, [i, j]: [u32; 2]) -> &[Point] {
-        self.on_edges
-            .get(&[i.min(j), i.max(j)])
-            .map_or(&[], Vec::as_slice)
+    pub fn places_on(&self, edge: [u32; 2]) -> impl Iterator<Item = Point> {
+        self.arrangement.on_edge(edge).map(|place| place.1)
+    }
+
+    /// Whether the functions of a tip jump over an arm.
+    pub fn jumps_over(&self, tip: usize, arm: usize) -> bool {
+        self.zones[tip].arms.contains(&arm)
     }
 
     /// Divided cells with faces of a crack, in order.
@@ -395,10 +386,13 @@ impl Enrichment {
 ///
 /// The line is that along which its functions jump: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
 /// enters.
-fn beside(frame: &TipFrame, map: &CellMap, rounding: f64) -> Side {
-    let near = on_crack(map.diagonal(), rounding);
-    let levels = map.iter().map(|x| snapped(frame.coordinates(x).phi, near));
-    let levels: Vec<f64> = levels.collect();
+fn beside(mesh: &Mesh, frame: &TipFrame, crack: &Crack, cell: usize) -> Side {
+    let map = mesh.map(cell);
+    let level = |(x, &node): (&Point, &u32)| match crack.holds(node) {
+        true => 0.0,
+        false => frame.coordinates(x).phi,
+    };
+    let levels: Vec<f64> = map.iter().zip(mesh.cell(cell)).map(level).collect();
     if !is_split(&levels) {
         return if levels.iter().any(|f| *f < 0.0) {
             -1.0

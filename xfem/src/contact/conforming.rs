@@ -2,44 +2,45 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, Geometry, crossings};
+use crate::cut::arrangement::Arrangement;
+use crate::cut::crack::{Crack, Geometry};
 use crate::cut::is_split;
-use crate::cut::placement::ends_inside;
 use crate::enrichment::EnrichmentError;
+use crate::geometry::Point;
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::{Point, mean};
 use crate::mesh::{Facet, Mesh};
 
 use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
 
 /// Splits the mesh along a crack of facets, from node to node or to the border, and returns its contact surface. Side 1 gets
-/// the new nodes.
+/// the new nodes. `arms`: the crack as it is arranged.
 ///
 /// The standard function of a node has the node's number, so the points' terms name nodes.
 ///
 /// # Errors
 /// A crack that runs through a cell, or ends between nodes.
-pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, EnrichmentError> {
+pub fn split(
+    mesh: &mut Mesh,
+    arms: &[Crack],
+    arrangement: &Arrangement,
+) -> Result<ContactSurface, EnrichmentError> {
+    let crack = &arms[0];
     let off = |at: Point| EnrichmentError::OffFacets {
         crack: crack.number,
         at,
     };
     // A node has one frame: a bend is no place for a pair.
-    let bends = crack.path.windows(3).map(|w| w[1].x);
-    let ends = ends_inside(mesh, crack).into_iter().map(|end| end.1);
-    let mut loose = bends.chain(ends.filter(|x| mesh.node_at(x).is_none()));
+    let bends = arms.iter().skip(1).map(|arm| arm.path[0].x);
+    let bends = bends.chain(crack.path.windows(3).map(|w| w[1].x));
+    let ends = arrangement.tips.iter().map(|tip| tip.x);
+    let mut loose = bends.chain(ends.filter(|x| !mesh.nodes.contains(x)));
     if let Some(x) = loose.next() {
         return Err(off(x));
     }
-    let cut =
-        |cell: &usize| is_split(&crack.cell_phi(mesh, *cell)) && centre_on(mesh, crack, *cell);
-    if let Some(&cell) = crack.cells().iter().find(|cell| cut(cell)) {
-        return Err(off(mesh.centre(cell)));
-    }
-    let facets = crack_facets(mesh, crack);
-    if let Geometry::Ellipse(Ellipse { centre, .. }) = crack.geometry {
-        return Err(off(centre));
-    }
+    let facets = match mesh.dim() {
+        2 => edges_along(mesh, arrangement).map_err(off)?,
+        _ => faces_along(mesh, crack).map_err(off)?,
+    };
     if facets.is_empty() {
         return Err(EnrichmentError::Outside(crack.number));
     }
@@ -88,8 +89,34 @@ pub fn split(mesh: &mut Mesh, crack: &Crack) -> Result<ContactSurface, Enrichmen
     Ok(surface)
 }
 
-/// Facets of side-2 cells on the crack that a side-1 cell shares: those not on the border.
-fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
+/// Edges of side-2 cells along a plane crack; where it runs through a cell instead.
+fn edges_along(mesh: &Mesh, arrangement: &Arrangement) -> Result<Vec<Facet>, Point> {
+    let mut found = Vec::new();
+    for (&cell, chains) in &arrangement.chains {
+        for chain in chains {
+            let Some((edge, cell)) = chain.along else {
+                return Err(mesh.centre(cell));
+            };
+            let nodes = mesh.cell(cell);
+            let facets = mesh.kind.facets().iter();
+            let local = facets
+                .enumerate()
+                .filter(|(_, own)| own.iter().all(|&i| edge.contains(&nodes[i])));
+            found.extend(local.map(|(local, _)| Facet { cell, local }));
+        }
+    }
+    Ok(found)
+}
+
+/// Facets of side-2 cells on a plane that a side-1 cell shares: those not on the border; where it runs through a cell instead.
+fn faces_along(mesh: &Mesh, crack: &Crack) -> Result<Vec<Facet>, Point> {
+    if let Geometry::Ellipse(Ellipse { centre, .. }) = crack.geometry {
+        return Err(centre);
+    }
+    let cut = |cell: &&usize| is_split(&crack.cell_phi(mesh, **cell));
+    if let Some(&cell) = crack.cells().iter().find(cut) {
+        return Err(mesh.centre(cell));
+    }
     let on_border = |facet: &Facet| mesh.sides.values().flatten().any(|b| b == facet);
     let mut found = Vec::new();
     for &cell in crack.cells() {
@@ -100,23 +127,7 @@ fn crack_facets(mesh: &Mesh, crack: &Crack) -> Vec<Facet> {
         let facets = mesh.kind.facets().iter().enumerate();
         let on = facets.filter(|(_, nodes)| nodes.iter().all(|&i| phi[i] == 0.0));
         let on = on.map(|(local, _)| Facet { cell, local });
-        found.extend(on.filter(|f| within(mesh, crack, *f) && !on_border(f)));
+        found.extend(on.filter(|facet| !on_border(facet)));
     }
-    found
-}
-
-/// True if a facet on the crack's curve or plane lies between its ends.
-fn within(mesh: &Mesh, crack: &Crack, facet: Facet) -> bool {
-    let tolerance = 1e-9 * mesh.map(facet.cell).diagonal();
-    mesh.facet_nodes(facet)
-        .all(|node| crack.jumps_at(&mesh.nodes[node], -tolerance))
-}
-
-/// True if the crack inside a split cell has its middle between the ends of the crack.
-fn centre_on(mesh: &Mesh, crack: &Crack, cell: usize) -> bool {
-    let map = mesh.map(cell);
-    let facet = crossings(&map, &crack.cell_phi(mesh, cell));
-    let off = |x: &Point| crack.distance(x).abs() >= 1e-6 * map.diagonal();
-    let middle = mean(facet.iter().map(|v| &v.0));
-    !facet.iter().any(|v| off(&v.0)) && crack.jumps_at(&middle, 0.0)
+    Ok(found)
 }

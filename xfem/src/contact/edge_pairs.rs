@@ -81,7 +81,7 @@ fn jump_terms(
     nodes: [u32; 2],
     at_tip: f64,
 ) -> Vec<(u32, f64)> {
-    let (cracks, enrichment) = (integrator.cracks, integrator.enrichment);
+    let enrichment = integrator.enrichment;
     let [p, q] = nodes.map(|n| &integrator.mesh.nodes[n as usize]);
     let x = &corner.x;
     let shares = if nodes[0] == nodes[1] {
@@ -102,9 +102,7 @@ fn jump_terms(
                 FunctionKind::Branch { tip, order: 0 } => {
                     let frame = &enrichment.tips[tip as usize];
                     // At the tip nothing jumps; rounding in r must not make a pair with a coefficient of 1e-8.
-                    if !cracks[index].jumps_with(frame, &cracks[frame.crack])
-                        || frame.distance(x) <= at_tip
-                    {
+                    if !enrichment.jumps_over(tip as usize, index) || frame.distance(x) <= at_tip {
                         continue;
                     }
                     let [one, two] = [1.0, -1.0].map(|side| frame.branch(x, Some(side)).0[0]);

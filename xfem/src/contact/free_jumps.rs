@@ -93,16 +93,12 @@ impl<'a> FreeJumps<'a> {
 
     /// Functions of a node that jump between two places.
     fn jumping(&self, node: u32, sides: [Place; 2]) -> Vec<usize> {
-        let CellIntegrator {
-            enrichment, cracks, ..
-        } = self.integrator;
+        let enrichment = self.integrator.enrichment;
         let jumps = |f: &usize| match enrichment.functions[*f].kind {
             FunctionKind::Piece { .. } => enrichment.step_across(sides, *f).is_some(),
             FunctionKind::Branch { tip, order: 0 } => {
-                let frame = &enrichment.tips[tip as usize];
                 let lives = |side| enrichment.step(side, *f) != ABSENT;
-                cracks[self.index].jumps_with(frame, &cracks[frame.crack])
-                    && sides.into_iter().all(lives)
+                enrichment.jumps_over(tip as usize, self.index) && sides.into_iter().all(lives)
             }
             _ => false,
         };

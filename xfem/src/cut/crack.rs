@@ -9,7 +9,7 @@
 //! A crack that meets an earlier one ends there: it is an arm whose step is 0 beyond its parent (Daux, Moës, Dolbow,
 //! Sukumar & Belytschko, Int. J. Numer. Meth. Engng 48 (2000) 1741). A crack that crosses another is two arms.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::geometry::boxes::{Extents, around};
@@ -18,7 +18,6 @@ use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::curve::Curve;
 use crate::geometry::ellipse::Ellipse;
-use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
 use crate::mesh::{Lengths, Mesh};
@@ -28,9 +27,6 @@ use crate::mesh::{Lengths, Mesh};
 /// Above rounding of coordinates (1e-16 of the body, about 1e-14 h). The crack is bent by so much at the node, and the contact
 /// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
 pub const ON_CRACK: f64 = 1e-12;
-
-/// To a support a node closer than this to a crack lies on it, in shortest edges of the mesh: cracks off facets pass that close.
-pub const HAIR: f64 = 1e-8;
 
 /// Distance from a crack below which a place lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
 pub fn on_crack(size: f64, rounding: f64) -> f64 {
@@ -69,8 +65,10 @@ pub enum Geometry {
 /// End of a 2D arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// The crack's own end: a tip, if it lies inside the body.
+    /// A tip: the crack's own end, in a plane body inside of it once it is arranged.
     Free,
+    /// The crack's own end on the border of the body, or outside.
+    Mouth,
     /// A bend, or the seam of a closed crack: the next arm goes on.
     Bend,
     /// Another crack.
@@ -123,10 +121,10 @@ pub(super) struct LevelSet {
     cells: Vec<usize>,
     /// Their nodes, ascending.
     nodes: Vec<u32>,
-    /// φ there, snapped to 0 within [`ON_CRACK`] [m].
+    /// φ there, 0 on the crack [m].
     phi: Vec<f64>,
-    /// See [`HAIR`] [m].
-    hair: f64,
+    /// Nodes on it, ascending.
+    on: Vec<u32>,
 }
 
 impl Crack {
@@ -135,24 +133,6 @@ impl Crack {
     pub fn shares_tips(&self, other: &Crack) -> bool {
         let solid = matches!(self.geometry, Geometry::Ellipse(_));
         self.number == other.number && (solid || self.range == other.range)
-    }
-
-    /// Whether the functions of a tip with the given frame jump over this arm; `own`: the arm that ends there.
-    pub fn jumps_with(&self, frame: &TipFrame, own: &Crack) -> bool {
-        /// Distance from the line of a tip below which a place lies on it, in parts of the arm.
-        const ON_LINE: f64 = 1e-9;
-        let slack = ON_LINE * (self.range[1] - self.range[0]);
-        let behind = |v: &PathVertex| {
-            let at = frame.coordinates(&v.x);
-            at.phi.abs() <= slack && at.psi <= slack
-        };
-        let leads_there = || match frame.shape {
-            FrontShape::Straight | FrontShape::Bent(_) => {
-                self.path.windows(2).any(|w| w.iter().all(behind))
-            }
-            _ => false,
-        };
-        self.number == own.number && (self.shares_tips(own) || leads_there())
     }
 
     /// Places a crack in a mesh of these lengths, alone.
@@ -197,20 +177,39 @@ impl Crack {
             tip,
             near: Arc::default(),
         };
-        let cells = mesh.surroundings().meeting(&crack.extents());
+        crack.place(mesh, lengths, None);
+        crack
+    }
+
+    /// Finds the mesh next to it. `on`: nodes on it; otherwise those closer to its curve or plane than [`ON_CRACK`].
+    pub(super) fn place(&mut self, mesh: &Mesh, lengths: &Lengths, on: Option<BTreeSet<u32>>) {
+        let cells = mesh.surroundings().meeting(&self.extents());
         let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
-        let phi = nodes.iter().map(|&node| {
-            let on = on_crack(lengths.of_nodes[node as usize], lengths.rounding);
-            snapped(crack.distance(&mesh.nodes[node as usize]), on)
+        let phi = nodes.iter().map(|node| {
+            let distance = self.distance(&mesh.nodes[*node as usize]);
+            match &on {
+                Some(on) if on.contains(node) => 0.0,
+                Some(_) => distance,
+                None => {
+                    let size = lengths.of_nodes[*node as usize];
+                    snapped(distance, on_crack(size, lengths.rounding))
+                }
+            }
         });
-        let phi = phi.collect();
-        crack.near = Arc::new(LevelSet {
+        let phi: Vec<f64> = phi.collect();
+        let on = match on {
+            Some(on) => on.into_iter().collect(),
+            None => {
+                let zero = nodes.iter().zip(&phi).filter(|n| *n.1 == 0.0);
+                zero.map(|n| *n.0).collect()
+            }
+        };
+        self.near = Arc::new(LevelSet {
             cells,
             nodes,
             phi,
-            hair: HAIR * lengths.smallest,
+            on,
         });
-        crack
     }
 
     /// A box around it [m].
@@ -240,17 +239,14 @@ impl Crack {
         }
     }
 
-    /// Nodes on its curve or plane or a hair beside it, ascending.
-    pub fn nodes_on(&self) -> impl Iterator<Item = u32> {
-        let nodes = self.near.nodes.iter().zip(&self.near.phi);
-        let hair = self.near.hair;
-        nodes.filter(move |n| n.1.abs() <= hair).map(|n| *n.0)
+    /// Nodes on it, in a solid on its plane, ascending.
+    pub fn nodes_on(&self) -> &[u32] {
+        &self.near.on
     }
 
-    /// Whether a node lies on its curve or plane.
+    /// Whether a node lies on it.
     pub fn holds(&self, node: u32) -> bool {
-        let place = self.near.nodes.binary_search(&node);
-        place.is_ok_and(|place| self.near.phi[place] == 0.0)
+        self.near.on.binary_search(&node).is_ok()
     }
 
     /// φ(x), signed distance to the crack's curve or plane [m].
@@ -301,7 +297,7 @@ impl Crack {
                 // Where another crack takes over, both sides still part.
                 let margin = self.ends.map(|end| match end {
                     End::Free => slack,
-                    End::Bend | End::Meeting => -slack.abs(),
+                    End::Mouth | End::Bend | End::Meeting => -slack.abs(),
                 });
                 let s = curve.nearest(x).s;
                 curve.is_closed()
@@ -341,10 +337,11 @@ pub fn crossings(map: &CellMap, phi: &[f64]) -> Vec<(Point, [usize; 2])> {
         .collect()
 }
 
-/// The first crack on whose curve or plane a node lies, by node.
+/// The first crack on which a node lies, by node.
 pub fn first_on(cracks: &[Crack]) -> BTreeMap<u32, usize> {
     let later_first = cracks.iter().enumerate().rev();
-    let nodes = later_first.flat_map(|(k, crack)| crack.nodes_on().map(move |node| (node, k)));
+    let nodes =
+        later_first.flat_map(|(k, crack)| crack.nodes_on().iter().map(move |&node| (node, k)));
     nodes.collect()
 }
 

@@ -101,6 +101,8 @@ pub struct Face {
     pub corners: Vec<FaceCorner>,
     /// Places on side 1 and side 2.
     pub sides: [Place; 2],
+    /// Frame n, a, b of the piece: a bent 2D crack is a chain of chords.
+    pub frame: [Point; 3],
 }
 
 impl Face {

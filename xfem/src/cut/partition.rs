@@ -9,7 +9,7 @@
 //! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
 use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, rounding, snapped};
-use crate::geometry::{Point, cross, dot, mean, norm, polygon, sub};
+use crate::geometry::{Point, cross, dot, mean, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
@@ -27,12 +27,23 @@ pub struct Partition {
     pub joined: Vec<[usize; 2]>,
     /// 2D: the segment between each of these pairs, the first part to its left [m].
     pub beyond: Vec<[Point; 2]>,
-    /// 2D: places on the border of the cell, its corners among them, with the local nodes they lie between.
-    pub border: Vec<FaceCorner>,
-    /// Where such a continuation meets the border of the cell [m].
-    pub hits: Vec<Point>,
+    /// 2D: the border of the cell between places of cracks, counter-clockwise.
+    pub border: Vec<BorderPiece>,
     /// Cracks that run into the cell but divide nothing: they end where they enter.
     pub dropped: Vec<usize>,
+}
+
+/// A piece of the border of a plane cell between places of cracks, its corners and the ends of continuations.
+#[derive(Debug, Clone)]
+pub struct BorderPiece {
+    /// Local edge, by its first node.
+    pub edge: usize,
+    /// From where to where, counter-clockwise [m].
+    pub ends: [Point; 2],
+    /// The region beside it.
+    pub region: usize,
+    /// Whether it begins at a place that the cell beyond knows, too: at no end of a continuation, which parts what is one.
+    pub at_place: bool,
 }
 
 /// Why a cell cannot be divided.
@@ -61,17 +72,15 @@ impl Partition {
         whole
     }
 
-    /// 2D: the part that lies beside the piece p q of the border, between two places of cracks; a continuation may end in
-    /// between.
-    pub fn beside(&self, p: &Point, q: &Point) -> Option<usize> {
-        let runs = |from: &Point, to: &Point| {
-            let along = |(a, b): (Point, Point)| {
-                a == *from && (b == *to || self.hits.contains(&b) && is_between(&b, from, to))
-            };
-            let mut parts = self.parts.iter();
-            parts.position(|part| polygon::edges(&part.polygon).any(along))
-        };
-        runs(p, q).or_else(|| runs(q, p))
+    /// 2D: the regions beside the pieces of a local edge, in its direction.
+    pub fn along(&self, edge: usize) -> impl DoubleEndedIterator<Item = &BorderPiece> {
+        self.border.iter().filter(move |piece| piece.edge == edge)
+    }
+
+    /// Arms that the regions of the cell lie on a side of.
+    pub fn arms(&self) -> impl Iterator<Item = usize> {
+        let sides = self.parts.iter().flat_map(|part| &part.sides);
+        sides.map(|side| side.0)
     }
 
     /// An undivided cell.
@@ -147,12 +156,14 @@ impl Partition {
                         crack: face.crack,
                         corners,
                         sides,
+                        frame: face.frame,
                     });
                 }
             }
         }
         let crossings = crossings(&map, &phi).into_iter();
         let facet = cyclic(crossings.map(|(x, nodes)| (x, Some(nodes))).collect());
+        let frame = crack.frame(&map[0]);
         // Its own face, clipped to every part it divides by the cracks that divide those from each other.
         for (host, half) in halves.iter().enumerate() {
             let Some(lower) = *half else { continue };
@@ -165,18 +176,12 @@ impl Partition {
                     crack: index,
                     corners: polygon,
                     sides: [(cell, host), (cell, lower)],
+                    frame,
                 });
             }
         }
         self.faces = faces;
     }
-}
-
-fn is_between(x: &Point, p: &Point, q: &Point) -> bool {
-    let (d, from) = (sub(q, p), sub(x, p));
-    let square = dot(&d, &d);
-    let along = dot(&from, &d);
-    along > 0.0 && along < square && norm(&cross(&d, &from)) <= 1e-9 * square
 }
 
 /// Whether a crack reaches into a part, or ends on another one before.

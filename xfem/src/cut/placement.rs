@@ -1,8 +1,8 @@
 //! Where cracks lie in a mesh: which cells they run through, in which they end, their tips and fronts inside the body.
 
+use crate::geometry::Point;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled};
 use crate::mesh::Mesh;
 
 use super::crack::{Crack, Geometry, crossings};
@@ -84,25 +84,12 @@ pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> T
 }
 
 /// Tips and fronts of a crack inside the body.
-pub fn fronts(mesh: &Mesh, index: usize, crack: &Crack) -> Vec<TipFrame> {
-    let inside = ends_inside(mesh, crack).into_iter();
-    let tips = inside.map(|(end, x, _)| tip_frame(index, crack, end, &x));
-    front_frame(index, crack).into_iter().chain(tips).collect()
-}
-
-/// Ends of a 2D crack strictly inside the body: which, position and direction ahead. One on the outer boundary is no tip.
-pub fn ends_inside(mesh: &Mesh, crack: &Crack) -> Vec<(usize, Point, Point)> {
-    crack
+pub fn fronts(index: usize, crack: &Crack) -> Vec<TipFrame> {
+    let tips = crack
         .tips()
         .into_iter()
-        .filter(|(_, x, ahead)| {
-            let Some(&cell) = cells_at(mesh, x).first() else {
-                return false;
-            };
-            let step = 1e-6 * mesh.map(cell).diagonal();
-            !cells_at(mesh, &add_scaled(x, step, ahead)).is_empty()
-        })
-        .collect()
+        .map(|(end, x, _)| tip_frame(index, crack, end, &x));
+    front_frame(index, crack).into_iter().chain(tips).collect()
 }
 
 /// Cells whose closure contains a point, within 1e-9 of their diagonal.

@@ -10,13 +10,9 @@
 //! multiplier leave a residual. It bounds the error of a uniform stress in the energy of a cell. On a sliver N_k is a
 //! difference of coordinates: what their rounding ε_x makes of the jumps, 4 (ε_x/h) |σ| ∫_Γ dΓ over the facets where φ_f
 //! jumps, counts as none.
-//!
-//! Cracks are moved to where several meet in nearly one place: how far, is told.
 
 use std::collections::BTreeSet;
 
-use crate::cut::crack::{Geometry, PathVertex};
-use crate::geometry::curve::Curve;
 use crate::geometry::{Point, add_scaled, dot, norm};
 use crate::material::stress;
 use crate::quadrature::measure;
@@ -26,10 +22,6 @@ use super::Discretisation;
 
 /// A body whose uniform stress is off by more than this is suspect, unless its coordinates hold fewer digits.
 pub const UNIFORM: f64 = 1e-9;
-
-/// A body one of whose cracks is farther than this from where it was put, in shortest edges, is suspect: tractions are off by as much
-/// over its length in edges.
-const MOVED: f64 = 5e-8;
 
 /// Steps from coordinates to N_k on a crack, each of which rounds: its place, where it crosses an edge, ξ, N.
 const STEPS: f64 = 4.0;
@@ -48,8 +40,6 @@ pub struct MeshChecks {
     pub at: Point,
     /// Rounding of the coordinates in shortest edges: far from the origin a cell holds no more digits.
     pub rounding: f64,
-    /// How far a crack of a plane body lies from where it was put, at most, in shortest edges, and its number, from 0.
-    pub moved: (f64, usize),
 }
 
 impl MeshChecks {
@@ -57,18 +47,9 @@ impl MeshChecks {
     pub fn reason(&self) -> Option<String> {
         // NaN passes no comparison.
         let exact = self.uniform <= UNIFORM.max(self.rounding);
-        if !exact {
-            let [x, y, z] = self.at;
-            let off = self.uniform;
-            return Some(format!(
-                "uniform stress is off by {off:.1e} near ({x:.6}, {y:.6}, {z:.6})"
-            ));
-        }
-        let (moved, crack) = self.moved;
-        (moved > MOVED.max(self.rounding)).then(|| {
-            let crack = crack + 1;
-            format!("crack {crack} is moved by {moved:.1e} edges to where others meet")
-        })
+        let ([x, y, z], off) = (self.at, self.uniform);
+        (!exact)
+            .then(|| format!("uniform stress is off by {off:.1e} near ({x:.6}, {y:.6}, {z:.6})"))
     }
 }
 
@@ -140,20 +121,7 @@ pub fn mesh_checks(body: &Discretisation) -> MeshChecks {
         uniform,
         at: body.place(&mesh.nodes[node]),
         rounding,
-        moved: moved(body),
     }
-}
-
-/// The largest distance between the polyline of a chain and the chain itself: the chords of an arc lie off it.
-fn moved(body: &Discretisation) -> (f64, usize) {
-    let edge = body.mesh.smallest_edge();
-    let chains = (body.cracks.iter())
-        .filter(|crack| matches!(crack.geometry, Geometry::Curve(Curve::Chain(_))));
-    let away = chains.flat_map(|crack| {
-        let of = |vertex: &PathVertex| (crack.distance(&vertex.x).abs() / edge, crack.number);
-        crack.path.iter().map(of)
-    });
-    away.fold((0.0, 0), |x, y| if y.0 > x.0 { y } else { x })
 }
 
 /// ∫ [[φ_f]] n dΓ over the facets that carry multipliers, and the area of those where φ_f jumps, by function.

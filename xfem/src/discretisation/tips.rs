@@ -34,7 +34,7 @@ const FRONT_SAMPLES: usize = 24;
 
 /// Tips of all cracks, whether they carry branch functions or not.
 pub fn fronts(body: &Discretisation) -> Vec<TipFrame> {
-    let of = |(index, crack)| placement::fronts(&body.mesh, index, crack);
+    let of = |(index, crack)| placement::fronts(index, crack);
     body.cracks.iter().enumerate().flat_map(of).collect()
 }
 
@@ -59,7 +59,7 @@ pub fn tip_fronts(body: &Discretisation) -> Vec<(String, TipFrame)> {
             let own = |t: &&(String, TipFrame)| t.0.starts_with(&format!("{name} "));
             tips.iter().filter(own).count()
         };
-        for tip in placement::fronts(&body.mesh, index, crack) {
+        for tip in placement::fronts(index, crack) {
             let FrontShape::Ellipse(ellipse) = &tip.shape else {
                 let place = tip_place(&name, known(&tips));
                 tips.push((place, tip));

@@ -28,7 +28,7 @@ pub fn pieces(
     };
     if let &[i, j] = local {
         return match mesh.dim() {
-            2 => border_pieces(partition, &vertices, [i, j]),
+            2 => border_pieces(partition, [i, j], map.len()),
             _ => edge_pieces(cracks, partition, &vertices, [i, j]),
         };
     }
@@ -69,21 +69,17 @@ pub fn clipped(
     polygon
 }
 
-/// An edge of a 2D cell, cut where chains end on it.
-fn border_pieces(partition: &Partition, ends: &[Point], nodes: [usize; 2]) -> Vec<Piece> {
-    let away = |x: &Point| norm(&sub(x, &ends[0]));
-    let on_edge =
-        |on: &Option<[usize; 2]>| on.is_some_and(|on| on == nodes || on == [nodes[1], nodes[0]]);
-    let places = partition.border.iter().filter(|(_, on)| on_edge(on));
-    let mut points: Vec<Point> = places.map(|place| place.0).collect();
-    points.sort_by(|a, b| away(a).total_cmp(&away(b)));
-    points.insert(0, ends[0]);
-    points.push(ends[1]);
-    let region = |w: &[Point]| {
-        let found = partition.beside(&w[0], &w[1]);
-        found.map(|region| (w.to_vec(), region))
-    };
-    points.windows(2).filter_map(region).collect()
+/// An edge of a 2D cell, cut where arms end on it or cross it.
+fn border_pieces(partition: &Partition, [i, j]: [usize; 2], count: usize) -> Vec<Piece> {
+    if (i + 1) % count == j {
+        let pieces = partition.along(i);
+        return pieces
+            .map(|piece| (piece.ends.to_vec(), piece.region))
+            .collect();
+    }
+    let pieces = partition.along(j).rev();
+    let turned = pieces.map(|piece| (vec![piece.ends[1], piece.ends[0]], piece.region));
+    turned.collect()
 }
 
 /// An edge of a 3D cell cut where the cracks cross it.

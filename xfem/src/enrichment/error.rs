@@ -1,6 +1,6 @@
 //! Cracks that a mesh cannot carry.
 
-use crate::cut::arms::Overlap;
+use crate::cut::arrangement::ArrangementError;
 use crate::cut::off_facets::AlongFacet;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
@@ -26,9 +26,9 @@ pub enum EnrichmentError {
     /// The stiffness is singular to working precision next to it.
     #[error("crack {} runs so near another that this mesh does not tell their faces apart: the stiffness is singular to working precision", .0 + 1)]
     Touching(usize),
-    /// Two cracks in one place.
+    /// Two cracks in one place, or a crack that is a point.
     #[error(transparent)]
-    Overlap(#[from] Overlap),
+    Arrangement(#[from] ArrangementError),
     /// The way of a crack through the cells is lost.
     #[error("crack {} cannot be followed from cell to cell, near {at:?}", crack + 1)]
     Lost {
@@ -64,7 +64,9 @@ impl EnrichmentError {
     /// The same with its place in other coordinates, larger by `by` [m].
     pub fn moved(mut self, by: &Point) -> Self {
         match &mut self {
-            Self::Overlap(Overlap { at, .. })
+            Self::Arrangement(
+                ArrangementError::Overlap { at, .. } | ArrangementError::Point { at, .. },
+            )
             | Self::Lost { at, .. }
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. }

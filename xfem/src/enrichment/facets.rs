@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::cut::crack::{Crack, Geometry};
-use crate::cut::part::{Face, Place};
+use crate::cut::part::Place;
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
-use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::space_area;
-use crate::geometry::{Point, add_scaled, norm, sub, unit};
+use crate::geometry::{Point, add_scaled, norm, sub};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -109,7 +108,6 @@ impl CrackFacets {
                 let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
                     continue;
                 };
-                let frame = piece_frame(crack, face, tolerance);
                 let corners = polygon
                     .into_iter()
                     .map(|corner| {
@@ -136,7 +134,7 @@ impl CrackFacets {
                 found.facets.push(Facet {
                     corners,
                     sides: face.sides,
-                    frame,
+                    frame: face.frame,
                     front,
                 });
             }
@@ -174,23 +172,6 @@ impl CrackFacets {
     /// Positions of the corners of a facet.
     pub fn polygon(&self, facet: &Facet) -> Vec<Point> {
         facet.corners.iter().map(|&c| self.corners[c].x).collect()
-    }
-}
-
-/// Frame of a piece: that of its chord where the crack bends, or was moved to meet others.
-fn piece_frame(crack: &Crack, face: &Face, tolerance: f64) -> [Point; 3] {
-    let chord = || {
-        let a = unit(&sub(&face.corners[1].0, &face.corners[0].0));
-        [turned(&a), a, [0.0, 0.0, 1.0]]
-    };
-    let moved = || {
-        let mut ends = face.corners.iter();
-        ends.any(|(x, _)| crack.distance(x).abs() > tolerance)
-    };
-    match &crack.geometry {
-        Geometry::Curve(Curve::Arc { .. }) => chord(),
-        Geometry::Curve(_) if moved() => chord(),
-        _ => crack.frame(&face.middle()),
     }
 }
 

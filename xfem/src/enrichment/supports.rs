@@ -11,17 +11,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::cut::crack::{Crack, HAIR, first_on};
+use crate::cut::arrangement::Arrangement;
+use crate::cut::crack::{Crack, first_on};
 use crate::cut::part::Place;
 use crate::cut::partition::Partition;
-use crate::cut::trace::Trace;
 use crate::geometry::polygon::{self, border_distance, space_area};
-use crate::geometry::{Point, norm, root, sub, unite};
+use crate::geometry::{Point, root, unite};
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 use crate::quadrature::measure;
 
 use super::cell_facets::clipped;
+use super::tips::Tips;
 
 /// A node's own piece no region of which is larger than this part of a cell is no longer its own: the largest piece is.
 const SLIVER: f64 = 1e-9;
@@ -36,12 +37,12 @@ type FacetKey = [u32; 4];
 pub fn support_pieces(
     mesh: &Mesh,
     cracks: &[Crack],
-    trace: &Trace,
-    partitions: &BTreeMap<usize, Partition>,
+    arrangement: &Arrangement,
+    tips: &Tips,
     beside: &BTreeMap<u32, Point>,
 ) -> Pieces {
     let near = Neighbours::new(mesh);
-    let touched = mesh.nodes_of(partitions.keys().copied());
+    let touched = mesh.nodes_of(tips.partitions.keys().copied());
     let mut facets: BTreeMap<FacetKey, Vec<usize>> = BTreeMap::new();
     for cell in near.cells_around(&touched) {
         for local in mesh.kind.facets() {
@@ -50,13 +51,13 @@ pub fn support_pieces(
         }
     }
     let joiner = Joiner {
-        on_crack: first_on(cracks),
         mesh,
         cracks,
-        trace,
-        partitions,
-        beside,
+        arrangement,
+        partitions: &tips.partitions,
+        parted: &tips.parted,
     };
+    let on_crack = first_on(cracks);
     let mut joins: BTreeMap<u32, Vec<[Place; 2]>> = BTreeMap::new();
     for (facet, cells) in &facets {
         let &[one, two] = cells.as_slice() else {
@@ -72,76 +73,18 @@ pub fn support_pieces(
     for node in touched {
         let own = joins.get(&node).map_or(&[][..], Vec::as_slice);
         let cells: Vec<usize> = near.cells_around(&[node].into()).into_iter().collect();
-        let pieces = joiner.pieces(node, &cells, own);
+        let crack = on_crack.get(&node).map(|&k| &cracks[k]);
+        let pieces = joiner.pieces(
+            node,
+            &cells,
+            own,
+            crack.map(|crack| (crack, beside.get(&node))),
+        );
         if !pieces.is_empty() {
             found.insert(node, pieces);
         }
     }
     found
-}
-
-/// Parts of some cells that a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
-/// than some arms.
-pub fn parted_from(
-    mesh: &Mesh,
-    arms: &[usize],
-    x: &Point,
-    cells: &BTreeSet<usize>,
-    trace: &Trace,
-    partitions: &BTreeMap<usize, Partition>,
-) -> BTreeSet<Place> {
-    let divided = || cells.iter().filter_map(|c| Some((*c, partitions.get(c)?)));
-    let own = |crack: usize| arms.contains(&crack);
-    if divided().all(|(_, p)| p.faces.iter().all(|f| own(f.crack))) {
-        return BTreeSet::new();
-    }
-    let joiner = Joiner {
-        mesh,
-        cracks: &[],
-        trace,
-        partitions,
-        beside: &BTreeMap::new(),
-        on_crack: BTreeMap::new(),
-    };
-    let places: Vec<Place> = (cells.iter())
-        .flat_map(|&cell| (0..joiner.regions(cell)).map(move |region| (cell, region)))
-        .collect();
-    let number = |place: &Place| places.binary_search(place).unwrap_or_default();
-    let mut parent: Vec<usize> = (0..places.len()).collect();
-    let mut join = |[one, two]: [Place; 2]| unite(&mut parent, number(&one), number(&two));
-    let mut facets: BTreeMap<FacetKey, usize> = BTreeMap::new();
-    for &cell in cells {
-        for local in mesh.kind.facets() {
-            let facet = key(local.iter().map(|&i| mesh.cell(cell)[i]));
-            if let Some(other) = facets.insert(facet, cell) {
-                joiner
-                    .over(&facet, [other, cell])
-                    .into_iter()
-                    .for_each(&mut join);
-            }
-        }
-    }
-    for (cell, partition) in divided() {
-        let faces = partition.faces.iter().filter(|f| own(f.crack));
-        let faces = faces.map(|f| f.sides);
-        let within = faces.filter(|sides| sides.iter().all(|side| cells.contains(&side.0)));
-        let joined = partition.joined.iter();
-        let joined = joined.map(|pair| pair.map(|region| (cell, region)));
-        within.chain(joined).for_each(&mut join);
-    }
-    let near = |&&(cell, region): &&Place| {
-        let map = mesh.map(cell);
-        let outline = match partitions.get(&cell) {
-            None => &map[..],
-            Some(partition) => &partition.parts[region].polygon,
-        };
-        polygon::contains(outline, x) || border_distance(outline, x) <= 1e-9 * map.diagonal()
-    };
-    let held: BTreeSet<usize> = (places.iter().filter(near))
-        .map(|place| root(&mut parent, number(place)))
-        .collect();
-    let away = |place: &Place| !held.contains(&root(&mut parent, number(place)));
-    places.iter().copied().filter(away).collect()
 }
 
 fn key(nodes: impl Iterator<Item = u32>) -> FacetKey {
@@ -151,17 +94,78 @@ fn key(nodes: impl Iterator<Item = u32>) -> FacetKey {
 }
 
 /// The rule that tells which regions are joined.
-struct Joiner<'a> {
-    mesh: &'a Mesh,
-    cracks: &'a [Crack],
-    trace: &'a Trace,
-    partitions: &'a BTreeMap<usize, Partition>,
-    beside: &'a BTreeMap<u32, Point>,
-    /// The first crack that runs through a node.
-    on_crack: BTreeMap<u32, usize>,
+pub(super) struct Joiner<'a> {
+    pub mesh: &'a Mesh,
+    pub cracks: &'a [Crack],
+    pub arrangement: &'a Arrangement,
+    pub partitions: &'a BTreeMap<usize, Partition>,
+    /// See [`Tips::parted`].
+    pub parted: &'a BTreeSet<([u32; 2], usize)>,
 }
 
 impl Joiner<'_> {
+    /// Parts of some cells that a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
+    /// than some arms.
+    pub fn parted_from(
+        &self,
+        arms: &[usize],
+        x: &Point,
+        cells: &BTreeSet<usize>,
+    ) -> BTreeSet<Place> {
+        let divided = || {
+            cells
+                .iter()
+                .filter_map(|c| Some((*c, self.partitions.get(c)?)))
+        };
+        if divided().all(|(_, p)| p.arms().all(|arm| arms.contains(&arm))) {
+            return BTreeSet::new();
+        }
+        let places: Vec<Place> = (cells.iter())
+            .flat_map(|&cell| (0..self.regions(cell)).map(move |region| (cell, region)))
+            .collect();
+        let number = |place: &Place| places.binary_search(place).ok();
+        let mut parent: Vec<usize> = (0..places.len()).collect();
+        let mut join = |pair: [Place; 2]| {
+            if let [Some(one), Some(two)] = pair.map(|place| number(&place)) {
+                unite(&mut parent, one, two);
+            }
+        };
+        let mut facets: BTreeMap<FacetKey, usize> = BTreeMap::new();
+        for &cell in cells {
+            for local in self.mesh.kind.facets() {
+                let facet = key(local.iter().map(|&i| self.mesh.cell(cell)[i]));
+                if let Some(other) = facets.insert(facet, cell) {
+                    let joined = self.over(&facet, [other, cell]);
+                    joined.into_iter().for_each(&mut join);
+                }
+            }
+        }
+        for (cell, partition) in divided() {
+            let faces = partition.faces.iter().filter(|f| arms.contains(&f.crack));
+            let beyond = partition.joined.iter();
+            let pairs = faces.map(|f| f.sides);
+            let pairs = pairs.chain(beyond.map(|pair| pair.map(|region| (cell, region))));
+            pairs.for_each(&mut join);
+        }
+        let near = |&&(cell, region): &&Place| {
+            let map = self.mesh.map(cell);
+            let outline = match self.partitions.get(&cell) {
+                None => &map[..],
+                Some(partition) => &partition.parts[region].polygon,
+            };
+            polygon::contains(outline, x) || border_distance(outline, x) <= 1e-9 * map.diagonal()
+        };
+        let held: BTreeSet<usize> = (places.iter().filter(near))
+            .filter_map(|place| Some(root(&mut parent, number(place)?)))
+            .collect();
+        let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
+        let away = places
+            .iter()
+            .zip(roots)
+            .filter(|(_, root)| !held.contains(root));
+        away.map(|(place, _)| *place).collect()
+    }
+
     fn regions(&self, cell: usize) -> usize {
         self.partitions.get(&cell).map_or(1, |p| p.parts.len())
     }
@@ -178,21 +182,31 @@ impl Joiner<'_> {
         }
     }
 
-    /// In 2D: over every part of the edge between two places on it.
+    /// In 2D: over every piece of the edge between two places on it, but those that cracks run along.
     fn over_edge(&self, edge: [u32; 2], cells: [usize; 2]) -> Vec<[Place; 2]> {
-        let [from, to] = edge.map(|n| self.mesh.nodes[n as usize]);
-        let mut places: Vec<Point> = self.trace.on_edges.get(&edge).cloned().unwrap_or_default();
-        places.insert(0, from);
-        places.push(to);
-        let region = |cell: usize, p: &Point, q: &Point| match self.partitions.get(&cell) {
-            None => Some(0),
-            Some(partition) => partition.beside(p, q),
-        };
-        let parts = places.windows(2).filter_map(|w| {
-            let [one, two] = cells.map(|cell| region(cell, &w[0], &w[1]));
-            Some([(cells[0], one?), (cells[1], two?)])
+        let count = self.arrangement.on_edge(edge).count() + 1;
+        let [one, two] = cells.map(|cell| match self.partitions.get(&cell) {
+            None => vec![0; count],
+            Some(partition) => {
+                let nodes = self.mesh.cell(cell);
+                let next = |i: usize| nodes[(i + 1) % nodes.len()];
+                let local =
+                    (0..nodes.len()).find(|&i| edge.contains(&nodes[i]) && edge.contains(&next(i)));
+                let local = local.unwrap_or_default();
+                let pieces = partition.along(local).filter(|piece| piece.at_place);
+                let pieces = pieces.map(|piece| piece.region);
+                // From the lower node on.
+                if nodes[local] == edge[0] {
+                    pieces.collect()
+                } else {
+                    pieces.rev().collect()
+                }
+            }
         });
-        parts.collect()
+        let pieces = one.into_iter().zip(two).enumerate();
+        let open = pieces.filter(|(k, _)| !self.parted.contains(&(edge, *k)));
+        open.map(|(_, (one, two))| [(cells[0], one), (cells[1], two)])
+            .collect()
     }
 
     /// In 3D: where the polygons that the regions leave of the face overlap.
@@ -231,7 +245,13 @@ impl Joiner<'_> {
     }
 
     /// The pieces of the support of a node beyond its own.
-    fn pieces(&self, node: u32, cells: &[usize], joins: &[[Place; 2]]) -> Vec<Vec<Place>> {
+    fn pieces(
+        &self,
+        node: u32,
+        cells: &[usize],
+        joins: &[[Place; 2]],
+        crack: Option<(&Crack, Option<&Point>)>,
+    ) -> Vec<Vec<Place>> {
         let own = |&cell: &usize| (0..self.regions(cell)).map(move |region| (cell, region));
         let places: Vec<Place> = cells.iter().flat_map(own).collect();
         let number = |place: &Place| places.binary_search(place).unwrap_or_default();
@@ -246,7 +266,7 @@ impl Joiner<'_> {
             unite(&mut parent, number(&one), number(&two));
         }
         let roots: Vec<usize> = (0..places.len()).map(|i| root(&mut parent, i)).collect();
-        let mut own = roots[self.own(node, &places)];
+        let mut own = roots[self.own(node, &places, crack)];
         let of = |piece: usize| {
             let both = places.iter().zip(&roots);
             both.filter(move |(_, root)| **root == piece)
@@ -277,33 +297,25 @@ impl Joiner<'_> {
         }
     }
 
-    /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of the first that runs there, or
-    /// on the side that was asked for.
-    fn own(&self, node: u32, places: &[Place]) -> usize {
+    /// The region a node belongs to: one that has it as a corner; on a crack one on side 1 of it, or on the side that was asked for.
+    fn own(&self, node: u32, places: &[Place], crack: Option<(&Crack, Option<&Point>)>) -> usize {
         let x = &self.mesh.nodes[node as usize];
-        // Beside a crack a hair away as on it: a piece that comes that close.
-        let size = self.mesh.map(places[0].0).diagonal();
         let at_node = |&(cell, region): &Place| match self.partitions.get(&cell) {
             None => true,
             Some(partition) => {
                 let part = &partition.parts[region];
                 let mut corners = part.polygon.iter().chain(part.tetrahedra.iter().flatten());
-                if self.beside.contains_key(&node) {
-                    corners.any(|c| norm(&sub(c, x)) <= HAIR * size)
-                } else {
-                    corners.any(|c| c == x)
-                }
+                corners.any(|c| c == x)
             }
         };
-        let crack = self.on_crack.get(&node).map(|&k| &self.cracks[k]);
-        let wanted = self.beside.get(&node).zip(crack);
-        let below = wanted.is_some_and(|(x, crack)| crack.distance(x) < 0.0);
+        let below =
+            crack.is_some_and(|(crack, beside)| beside.is_some_and(|x| crack.distance(x) < 0.0));
         let above = |&(cell, region): &Place| {
             let middle = match self.partitions.get(&cell) {
                 None => self.mesh.centre(cell),
                 Some(partition) => partition.parts[region].middle(),
             };
-            crack.is_none_or(|c| (c.distance(&middle) > 0.0) != below)
+            crack.is_none_or(|(c, _)| (c.distance(&middle) > 0.0) != below)
         };
         let mut best = 0;
         let mut found = 0;

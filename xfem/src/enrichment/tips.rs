@@ -16,26 +16,32 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use self::corners::Corner;
+use crate::cut::arrangement::{Arrangement, Chain};
 use crate::cut::crack::{Crack, End, Tip};
-use crate::cut::flat;
-use crate::cut::partition::Partition;
+use crate::cut::part::Face;
+use crate::cut::partition::{BorderPiece, Partition};
 use crate::cut::placement::{self, front_frame};
-use crate::cut::trace::{Chain, Trace};
+use crate::cut::regions;
 use crate::geometry::boxes::Boxes;
+use crate::geometry::curve::turned;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{add_scaled, norm, sub};
+use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::neighbours::Neighbours;
 use crate::mesh::{Lengths, Mesh};
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
+use super::supports::Joiner;
 use super::zone::{Zone, front_room};
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
 
-/// A line no deeper than this in a cell, in diagonals, is not in it: finer than cracks are moved off facets.
+/// A line farther than this from a cell, in diagonals, is not on it: rounding.
 const GRAZING: f64 = 1e-12;
+
+/// A line that is no longer than this in a cell, in diagonals, only touches it.
+const LONGER: f64 = 1e-6;
 
 /// Cells longer than this times their width take no branch functions by themselves …
 const SLENDER: f64 = 6.0;
@@ -50,6 +56,8 @@ const SHORTEST: f64 = 0.01;
 pub struct Tips {
     /// Divided cells.
     pub partitions: BTreeMap<usize, Partition>,
+    /// Pieces of mesh edges (lower node first) between places of cracks, by their number from the lower node on, that cracks run along.
+    pub parted: BTreeSet<([u32; 2], usize)>,
     /// Cells that a crack divides up to its end and that are left whole, because the end carries no branch functions.
     pub endings: BTreeMap<usize, Partition>,
     /// Tips and fronts inside the body that carry branch functions.
@@ -73,29 +81,30 @@ impl Tips {
         mesh: &Mesh,
         lengths: &Lengths,
         arms: &[Crack],
-        trace: &Trace,
+        arrangement: &Arrangement,
     ) -> Result<Self, EnrichmentError> {
         let mut search = Search {
             mesh,
             lengths,
             near: Neighbours::new(mesh),
             arms,
-            trace,
-            kept: trace
+            arrangement,
+            kept: arrangement
                 .tips
                 .iter()
                 .map(|t| arms[t.arm].tip != Tip::None)
                 .collect(),
             pairs: BTreeSet::new(),
             partitions: BTreeMap::new(),
+            parted: BTreeSet::new(),
             extents: Boxes::new(arms.iter().map(Crack::extents)),
             tips_of: vec![Vec::new(); arms.len()],
             chains_of: vec![Vec::new(); arms.len()],
         };
-        for (number, tip) in trace.tips.iter().enumerate() {
+        for (number, tip) in arrangement.tips.iter().enumerate() {
             search.tips_of[tip.arm].push(number);
         }
-        for (&cell, chains) in &trace.chains {
+        for (&cell, chains) in &arrangement.chains {
             let own = chains.iter().map(|chain| (cell, chain));
             own.for_each(|chain| search.chains_of[chain.1.arm].push(chain));
         }
@@ -108,7 +117,7 @@ impl Tips {
             endings: search.endings(),
             ..Tips::default()
         };
-        let kept = trace.tips.par_iter().enumerate();
+        let kept = arrangement.tips.par_iter().enumerate();
         let found = kept.filter(|t| search.kept[t.0]).map(|(number, tip)| {
             let end = search.end(number);
             let zone = search.zone(tip, &end);
@@ -116,20 +125,21 @@ impl Tips {
             (tip, end, zone, beyond)
         });
         for (tip, end, zone, beyond) in found.collect::<Vec<_>>() {
-            tips.add(end.0.clone(), &tip.cells, zone);
+            tips.add(end.frame.clone(), &tip.cells, zone);
             if let Some(zone) = beyond {
-                tips.add(end.0, &[], zone);
+                tips.add(end.frame, &[], zone);
             }
         }
         for &arm in &search.pairs {
             let cells: Vec<usize> = search.cells_of(arm);
-            let own = search.tips_of[arm].iter().map(|&t| &trace.tips[t]);
+            let own = search.tips_of[arm].iter().map(|&t| &arrangement.tips[t]);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
-            let zone = Zone::plain(mesh.nodes_of(cells));
+            let mut zone = Zone::plain(mesh.nodes_of(cells));
+            zone.arms = vec![arm];
             tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
         }
         search.add_corners(&mut tips);
-        tips.partitions = search.partitions;
+        (tips.partitions, tips.parted) = (search.partitions, search.parted);
         tips.cells.sort_unstable();
         Ok(tips)
     }
@@ -199,7 +209,7 @@ impl Tips {
                 let mut faces = divided.iter().flat_map(|p| &p.faces);
                 faces.all(|f| arms[f.crack].number == arms[index].number)
             };
-            let zone = match radius {
+            let mut zone = match radius {
                 Some(radius) => {
                     let near = near.get_or_insert_with(|| Neighbours::new(mesh));
                     let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
@@ -207,6 +217,8 @@ impl Tips {
                 }
                 None => Zone::plain(at_front),
             };
+            let shared = |&arm: &usize| arms[arm].number == arms[index].number;
+            zone.arms = (0..arms.len()).filter(shared).collect();
             tips.add(frame, &cells, zone);
         }
         tips.cells.sort_unstable();
@@ -242,7 +254,7 @@ struct Search<'a> {
     lengths: &'a Lengths,
     near: Neighbours<'a>,
     arms: &'a [Crack],
-    trace: &'a Trace,
+    arrangement: &'a Arrangement,
     /// By tip: whether it does, so far.
     kept: Vec<bool>,
     /// Arms with functions of both ends.
@@ -252,6 +264,8 @@ struct Search<'a> {
     tips_of: Vec<Vec<usize>>,
     chains_of: Vec<Vec<(usize, &'a Chain)>>,
     partitions: BTreeMap<usize, Partition>,
+    /// See [`Tips::parted`].
+    parted: BTreeSet<([u32; 2], usize)>,
 }
 
 impl Search<'_> {
@@ -274,48 +288,156 @@ impl Search<'_> {
 
     fn keeps(&self, arm: usize, end: usize) -> bool {
         let mut tips = self.tips_of[arm].iter();
-        self.pairs.contains(&arm) || tips.any(|&t| self.kept[t] && self.trace.tips[t].end == end)
+        self.pairs.contains(&arm)
+            || tips.any(|&t| self.kept[t] && self.arrangement.tips[t].end == end)
     }
 
     fn divide(&mut self) -> Result<(), EnrichmentError> {
         self.partitions.clear();
-        for (&cell, chains) in &self.trace.chains {
-            let own: Vec<&Chain> = chains.iter().filter(|c| self.divides(c)).collect();
-            if own.is_empty() {
-                continue;
+        self.parted.clear();
+        for (&cell, chains) in &self.arrangement.chains {
+            let own: Vec<&Chain> = (chains.iter())
+                .filter(|chain| chain.along.is_none() && self.divides(chain))
+                .collect();
+            if !own.is_empty() {
+                let partition = self.divided(cell, &own)?;
+                if partition.parts.len() > 1 {
+                    self.partitions.insert(cell, partition);
+                }
             }
-            let partition = flat::divide(self.mesh, cell, self.arms, self.trace, &own);
-            let partition = partition.map_err(|reason| EnrichmentError::Partition {
-                crack: own.last().map_or(0, |chain| self.arms[chain.arm].number),
-                reason,
-                at: self.mesh.centre(cell),
-            })?;
-            if partition.parts.len() > 1 {
-                self.partitions.insert(cell, partition);
+        }
+        let arrangement = self.arrangement;
+        let chains = arrangement.chains.iter();
+        let along = chains.flat_map(|(&cell, own)| own.iter().map(move |chain| (cell, chain)));
+        for (cell, chain) in along {
+            if let Some((edge, other)) = chain.along.filter(|_| self.divides(chain)) {
+                self.part_edge(edge, [cell, other], chain)?;
             }
         }
         Ok(())
     }
 
+    /// The regions of a cell between chains through it.
+    fn divided(&self, cell: usize, chains: &[&Chain]) -> Result<Partition, EnrichmentError> {
+        let number = |arm: usize| self.arms[arm].number;
+        regions::divide(self.mesh, cell, self.arrangement, chains, number).map_err(|reason| {
+            EnrichmentError::Partition {
+                crack: chains.last().map_or(0, |chain| number(chain.arm)),
+                reason,
+                at: self.mesh.centre(cell),
+            }
+        })
+    }
+
+    /// Parts two cells by a chain along the edge between them, piece by piece where continuations end on it.
+    fn part_edge(
+        &mut self,
+        edge: [u32; 2],
+        cells: [usize; 2],
+        chain: &Chain,
+    ) -> Result<(), EnrichmentError> {
+        let [from, to] = [chain.vertices[0], chain.vertices[chain.vertices.len() - 1]].map(|v| v.x);
+        let along = chain.directions[0];
+        let at = |x: &Point| dot(&sub(x, &from), &along);
+        let length = at(&to);
+        let mut pieces = [Vec::new(), Vec::new()];
+        for ((cell, side), pieces) in cells.into_iter().zip([1.0, -1.0]).zip(&mut pieces) {
+            if !self.partitions.contains_key(&cell) {
+                let whole = self.divided(cell, &[])?;
+                self.partitions.insert(cell, whole);
+            }
+            let (nodes, partition) = (self.mesh.cell(cell), self.partitions.get_mut(&cell));
+            let Some(Partition { parts, border, .. }) = partition else {
+                continue;
+            };
+            let on_edge = |piece: &&BorderPiece| {
+                let ends = [piece.edge, (piece.edge + 1) % nodes.len()];
+                let middle = 0.5 * (at(&piece.ends[0]) + at(&piece.ends[1]));
+                ends.iter().all(|&i| edge.contains(&nodes[i])) && (0.0..length).contains(&middle)
+            };
+            for piece in border.iter().filter(on_edge) {
+                let own = &mut parts[piece.region];
+                if own.side(chain.arm).is_none() {
+                    own.sides.push((chain.arm, side));
+                }
+                pieces.push(piece.clone());
+            }
+            if side < 0.0 {
+                pieces.reverse();
+            }
+        }
+        let [left, right] = &pieces;
+        let nodes = self.mesh.cell(cells[0]);
+        let mut faces = Vec::new();
+        let (mut i, mut j, mut x) = (0, 0, from);
+        // The left cell lies to the left of its outline, the right one of the way back.
+        while let (Some(one), Some(two)) = (left.get(i), right.get(j)) {
+            let (end, other) = (one.ends[1], two.ends[0]);
+            let next = if at(&end) <= at(&other) { end } else { other };
+            (i, j) = (i + usize::from(end == next), j + usize::from(other == next));
+            let ends = [one.edge, (one.edge + 1) % nodes.len()];
+            let corner = |x: Point| {
+                let node = ends
+                    .into_iter()
+                    .find(|&i| self.mesh.nodes[nodes[i] as usize] == x);
+                (x, Some(node.map_or(ends, |node| [node, node])))
+            };
+            faces.push(Face {
+                crack: chain.arm,
+                corners: vec![corner(x), corner(next)],
+                sides: [(cells[0], one.region), (cells[1], two.region)],
+                frame: [turned(&along), along, [0.0, 0.0, 1.0]],
+            });
+            x = next;
+        }
+        if let Some(partition) = self.partitions.get_mut(&cells[0]) {
+            partition.faces.extend(faces);
+        }
+        let lower = &self.mesh.nodes[edge[0] as usize];
+        let away = |x: &Point| norm(&sub(x, lower));
+        let nearer = away(&from).min(away(&to));
+        let before = self
+            .arrangement
+            .on_edge(edge)
+            .filter(|(_, x)| away(x) <= nearer);
+        self.parted.insert((edge, before.count()));
+        Ok(())
+    }
+
     /// Shape of the cells left whole with their cracks up to the ends.
     fn endings(&self) -> BTreeMap<usize, Partition> {
-        let whole = self.trace.chains.iter().filter(|(cell, chains)| {
-            !self.partitions.contains_key(cell) && chains.iter().any(|c| c.tip != [false; 2])
+        let through = |chain: &&Chain| chain.along.is_none();
+        let whole = self.arrangement.chains.iter().filter(|(cell, chains)| {
+            let mut through = chains.iter().filter(through);
+            !self.partitions.contains_key(cell) && through.any(|c| c.tip != [false; 2])
         });
         whole
             .filter_map(|(&cell, chains)| {
-                let own: Vec<&Chain> = chains.iter().collect();
-                let partition = flat::divide(self.mesh, cell, self.arms, self.trace, &own);
-                Some((cell, partition.ok()?))
+                let own: Vec<&Chain> = chains.iter().filter(through).collect();
+                Some((cell, self.divided(cell, &own).ok()?))
             })
             .collect()
     }
 
-    /// Cells that an arm runs through or ends in.
+    /// Cells that an arm runs through, along or ends in.
     fn cells_of(&self, arm: usize) -> Vec<usize> {
-        let mut cells: Vec<usize> = self.chains_of[arm].iter().map(|c| c.0).collect();
+        let own = self.chains_of[arm].iter();
+        let beside =
+            |(cell, chain): &(usize, &Chain)| [Some(*cell), chain.along.map(|along| along.1)];
+        let mut cells: Vec<usize> = own.flat_map(beside).flatten().collect();
+        cells.sort_unstable();
         cells.dedup();
         cells
+    }
+
+    fn joiner(&self) -> Joiner<'_> {
+        Joiner {
+            mesh: self.mesh,
+            cracks: &[],
+            arrangement: self.arrangement,
+            partitions: &self.partitions,
+            parted: &self.parted,
+        }
     }
 
     /// Length of an arm inside the body [m].
@@ -326,14 +448,14 @@ impl Search<'_> {
 
     /// Whether the cells of a tip can carry its functions.
     fn has_room(&self, number: usize) -> bool {
-        let tip = &self.trace.tips[number];
+        let tip = &self.arrangement.tips[number];
         let divided = |cell: &usize| self.partitions.get(cell);
         // A tip inside a cell divides it.
         let parted = tip.cells.len() > 1
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
-        let size = self.mesh.map(tip.cells[0]).diagonal();
-        let parted = parted && self.room(number).min(self.inside(tip.arm)) > SHORTEST * size;
+        let least = SHORTEST * self.mesh.map(tip.cells[0]).diagonal();
+        let parted = parted && self.inside(tip.arm) > least;
         // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.
         let longest = match self.arms[tip.arm].tip {
             Tip::Auto => SLENDER,
@@ -345,7 +467,7 @@ impl Search<'_> {
             return false;
         }
         let end = self.end(number);
-        !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
+        end.room > least && !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
     }
 
     /// Straight arms with two ends inside the body, none of which has room: they take functions of both.
@@ -354,8 +476,9 @@ impl Search<'_> {
             let own = self.tips_of[index].iter().filter(|&&t| !self.kept[t]);
             let cells = self.cells_of(index);
             let alone = cells.iter().all(|cell| {
-                let chains = &self.trace.chains[cell];
-                chains.iter().all(|c| c.arm == index || !self.divides(c))
+                let chains = self.arrangement.chains.get(cell);
+                let mut chains = chains.into_iter().flatten();
+                chains.all(|c| c.arm == index || !self.divides(c))
             });
             if arm.tip != Tip::None
                 && arm.ends == [End::Free; 2]

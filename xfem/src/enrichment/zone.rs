@@ -23,6 +23,8 @@ pub struct Zone {
     pub core: BTreeSet<u32>,
     /// Those where the ramp makes g₃ and g₄ superfluous.
     pub surplus: Vec<u32>,
+    /// Arms over which its functions jump.
+    pub arms: Vec<usize>,
     /// Radius of the ramp [m]; 0: there is none.
     pub radius: f64,
     /// Regions of its cells that other cracks part from the tip.

@@ -1,5 +1,6 @@
 //! Rules for comparison with exact fields over cut bodies.
 
+use crate::cut::arrangement::Arrangement;
 use crate::cut::crack::{Crack, Tip};
 use crate::cut::placement;
 use crate::enrichment::Enrichment;
@@ -30,8 +31,13 @@ impl Body {
         let lines = corner.iter().zip(cells).map(line).collect();
         let mesh = box_mesh(&GridSpec::new(lines)).unwrap();
         let lengths = mesh.lengths();
-        let cracks = vec![Crack::new(0, shape, tip, &mesh, &lengths)];
-        let enrichment = Enrichment::new(&mesh, &lengths, &cracks, &Default::default()).unwrap();
+        let whole = vec![Crack::new(0, shape, tip, &mesh, &lengths)];
+        let (arrangement, cracks) = match mesh.dim() {
+            2 => Arrangement::new(&mesh, &lengths, &whole).unwrap(),
+            _ => (Arrangement::default(), whole),
+        };
+        let placed = (cracks.as_slice(), arrangement);
+        let enrichment = Enrichment::new(&mesh, &lengths, placed, &Default::default()).unwrap();
         Body {
             mesh,
             cracks,
@@ -69,7 +75,7 @@ fn the_rule_fills_the_body_and_resolves_both_tips() {
         let body = Body::new(&[6.0; 2], &[6; 2], &shape, tip);
         let integrator = body.integrator();
         let crack = &body.cracks[0];
-        let fronts = placement::fronts(&body.mesh, 0, crack);
+        let fronts = placement::fronts(0, crack);
         let ends: Vec<Point> = fronts.iter().map(|f| f.position).collect();
         for (n, tolerance) in [(4, 1e-6), (8, 1e-9)] {
             let (mut area, mut found) = (0.0, [0.0; 2]);

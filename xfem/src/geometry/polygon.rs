@@ -1,5 +1,7 @@
 //! Simple polygons in the plane: cut along chains, filled with triangles.
 
+use std::collections::BTreeSet;
+
 use super::clip::fan;
 use super::{Point, add_scaled, cross, dot, norm, sub};
 
@@ -47,6 +49,25 @@ pub fn segment_distance(x: &Point, p: &Point, q: &Point) -> f64 {
     norm(&sub(x, &segment_foot(x, p, q)))
 }
 
+/// Numbers of the points of a polyline between which it is straight, give or take `slack` [m] (D. H. Douglas & T. K. Peucker,
+/// Cartographica 10 (1973) 112).
+pub fn bends(points: &[Point], slack: f64) -> Vec<usize> {
+    let Some(last) = points.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    let mut kept = BTreeSet::from([0, last]);
+    let mut ranges = vec![(0, last)];
+    while let Some((i, j)) = ranges.pop() {
+        let off = |k: &usize| segment_distance(&points[*k], &points[i], &points[j]);
+        let farthest = (i + 1..j).max_by(|a, b| off(a).total_cmp(&off(b)));
+        if let Some(k) = farthest.filter(|k| off(k) > slack) {
+            kept.insert(k);
+            ranges.extend([(i, k), (k, j)]);
+        }
+    }
+    kept.into_iter().collect()
+}
+
 /// Where a segment p q crosses another, both more than a given part of their lengths from their ends: how far from p, in parts
 /// of it, and the place.
 pub fn crossed([p, q]: [&Point; 2], [a, b]: [&Point; 2], least: f64) -> Option<(f64, Point)> {
@@ -70,15 +91,15 @@ pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     (0..count).map(move |i| (polygon[i], polygon[(i + 1) % count]))
 }
 
-/// Whether a segment p q comes closer than −`slack` to the inside of a convex counter-clockwise polygon [m]: by a negative
-/// slack it may touch.
-pub fn meets(polygon: &[Point], p: &Point, q: &Point, slack: f64) -> bool {
+/// Whether a longer part of a segment p q than `least` lies in a convex counter-clockwise polygon or no farther than `slack` from
+/// it [m].
+pub fn meets(polygon: &[Point], [p, q]: [&Point; 2], slack: f64, least: f64) -> bool {
     // The part of the segment inside all half planes (Cyrus and Beck 1978).
     let (mut from, mut to) = (0.0f64, 1.0f64);
     for (a, b) in edges(polygon) {
         let d = sub(&b, &a);
         let length = norm(&d);
-        let [f, g] = [p, q].map(|x| cross(&d, &sub(x, &a))[2] / length - slack);
+        let [f, g] = [p, q].map(|x| cross(&d, &sub(x, &a))[2] / length + slack);
         if f < 0.0 && g < 0.0 {
             return false;
         }
@@ -88,7 +109,7 @@ pub fn meets(polygon: &[Point], p: &Point, q: &Point, slack: f64) -> bool {
             to = to.min(f / (f - g));
         }
     }
-    from < to
+    (to - from) * norm(&sub(q, p)) > least
 }
 
 /// True inside (crossing number); on the outline either.

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::cut::arrangement::DELTA;
 use crate::geometry::Point;
 use crate::mesh::{Facet, Mesh};
-
-/// Bounds of regions closer than this to a node go through it, in shortest cell edges.
-const ON_NODE: f64 = 1e-9;
 
 /// Convex polygons or segments.
 pub type Parts = Vec<Vec<Point>>;
@@ -33,7 +31,7 @@ pub struct Region<'a> {
 /// Facets and nodes of the sides of a mesh.
 pub struct Border<'a> {
     mesh: &'a Mesh,
-    /// Of all comparisons of coordinates [m].
+    /// Bounds of regions closer than this to a node or a crack go through it [m].
     delta: f64,
     /// By node: the sides it lies on, one bit each.
     on: Vec<u8>,
@@ -64,7 +62,7 @@ impl<'a> Border<'a> {
     pub fn new(mesh: &'a Mesh) -> Self {
         let mut border = Border {
             mesh,
-            delta: (ON_NODE * mesh.smallest_edge()).max(mesh.rounding()),
+            delta: (DELTA * mesh.smallest_edge()).max(mesh.rounding()),
             on: vec![0; mesh.nodes.len()],
             sides: BTreeMap::new(),
         };

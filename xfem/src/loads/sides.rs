@@ -2,12 +2,16 @@
 //!
 //! Beyond its ends the crack is thought to go on along its level set: the values on both sides agree there.
 
-use crate::cut::crack::{Crack, Tip};
+use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::part::Region;
+use crate::cut::placement::cells_at;
 use crate::geometry::clip::Side;
 use crate::geometry::crack_shape::CrackShape;
 use crate::geometry::{Point, add_scaled, dot};
 use crate::stiffness::cell_matrix::CellIntegrator;
+
+/// How far ahead of an end at a node the body is looked for, in shortest edges.
+const AHEAD: f64 = 1e-6;
 
 /// Sides of the first crack in a mesh.
 pub struct Sides {
@@ -28,7 +32,13 @@ impl Sides {
         }
         // A crack on cell facets: its nodes are doubled, and every copy belongs to cells of one side only.
         let (shape, tip) = first?;
-        let crack = Crack::new(0, shape, tip, mesh, &mesh.lengths());
+        let mut crack = Crack::new(0, shape, tip, mesh, &mesh.lengths());
+        for (end, x, ahead) in crack.tips() {
+            let step = AHEAD * mesh.smallest_edge();
+            if cells_at(mesh, &add_scaled(&x, step, &ahead)).is_empty() {
+                crack.ends[end] = End::Mouth;
+            }
+        }
         let mut nodes: Vec<Side> = (0..mesh.nodes.len())
             .map(|n| crack.side_of(mesh, n))
             .collect();

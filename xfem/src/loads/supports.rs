@@ -12,7 +12,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::contact::free_jumps::FreeJumps;
-use crate::cut::crack::{Crack, HAIR, first_on};
+use crate::cut::arrangement::DELTA;
+use crate::cut::crack::{Crack, first_on};
 use crate::cut::part::Region as CellRegion;
 use crate::enrichment::Enrichment;
 use crate::enrichment::basis::{FunctionKind, STEP};
@@ -193,7 +194,7 @@ impl<'a> Supports<'a> {
                 };
                 for &s in &acting {
                     let inside = self.border.split(&self.spec(s).on, corners.clone());
-                    let size = HAIR * diameter(&corners);
+                    let size = DELTA * diameter(&corners);
                     let near = |own: &&Vec<Point>| {
                         diameter(own) > size && own.iter().any(|p| norm(&sub(p, x)) <= size)
                     };
@@ -319,7 +320,7 @@ impl<'a> Supports<'a> {
             let pieces = pieces(mesh, cracks, enrichment, part.cell, &part.local);
             // Within bounds what a crack leaves of a part a hair beside a node is none.
             let bounded = acting.iter().any(|&s| self.spec(s).on.condition.is_some());
-            let hair = HAIR * diameter(&self.border.corners(&part));
+            let hair = DELTA * diameter(&self.border.corners(&part));
             for (piece, region) in &pieces {
                 if bounded && diameter(piece) <= hair {
                     continue;

@@ -429,7 +429,7 @@ impl CellIntegrator<'_> {
         // By the edge: the cell on its other side must take the same.
         let tips = self.enrichment;
         let tips = tips.singular_points_near(&[from, to], away(&to));
-        let mut places = self.enrichment.places_on(ends).to_vec();
+        let mut places = self.enrichment.places_on(ends).collect::<Vec<_>>();
         places.extend([from, to]);
         places.sort_by(|a, b| away(a).total_cmp(&away(b)));
         let mut points = Vec::new();

@@ -24,15 +24,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
+use crate::cut::arrangement::TracedTip;
 use crate::cut::crack::{End, Geometry, Tip};
 use crate::cut::placement::cells_at;
-use crate::cut::trace::TracedTip;
 use crate::geometry::curve::{Curve, turned};
-use crate::geometry::polygon::meets;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub, unit};
 
-use super::{GRAZING, SHORTEST, SLENDER, Search, Tips, Zone, branches};
+use super::ends::Ending;
+use super::{SHORTEST, SLENDER, Search, Tips, Zone, branches};
 
 /// A node nearer to an arm than this, in edges, is not deep in a wedge: what is left out there is missed elsewhere.
 const DEEP: f64 = 0.7;
@@ -59,9 +59,6 @@ pub struct Corner {
     /// Shortest edge of the mesh around it [m].
     pub size: f64,
 }
-
-/// The frame of an arm and the length that its functions know [m].
-type Ending = (TipFrame, f64);
 
 /// An arm and which of its ends, 0 or 1.
 type ArmEnd = (usize, usize);
@@ -95,8 +92,11 @@ impl Search<'_> {
             tips.cells.extend(cells.iter().map(|&cell| (cell, first)));
             let corner = Corner { x, long, size };
             tips.corners.push(corner);
-            tips.zones.resize(first + arms.len(), zone);
-            tips.frames.extend(arms.into_iter().map(|arm| arm.0));
+            tips.zones.extend(arms.iter().map(|arm| Zone {
+                arms: arm.arms.clone(),
+                ..zone.clone()
+            }));
+            tips.frames.extend(arms.into_iter().map(|arm| arm.frame));
         }
     }
 
@@ -146,10 +146,10 @@ impl Search<'_> {
             }
         }
         if let [one, two] = arms.as_slice()
-            && dot(&one.0.ahead, &two.0.ahead) < -STRAIGHT
+            && dot(&one.frame.ahead, &two.frame.ahead) < -STRAIGHT
         {
             let near = |tip: &&TracedTip| self.carries(tip.arm) && norm(&sub(&tip.x, x)) <= size;
-            others.extend(self.trace.tips.iter().filter(near).map(|tip| tip.arm));
+            others.extend(self.arrangement.tips.iter().filter(near).map(|tip| tip.arm));
             if others.is_empty() {
                 return None;
             }
@@ -171,11 +171,11 @@ impl Search<'_> {
         cells: &[usize],
         deep: f64,
     ) -> Option<Zone> {
-        let own: Vec<usize> = arms.iter().map(|(frame, _)| frame.crack).collect();
+        let own: Vec<usize> = arms.iter().map(|arm| arm.frame.crack).collect();
         let all = [&own[..], others].concat();
-        let rooms = arms.iter().map(|arm| arm.1);
+        let rooms = arms.iter().map(|arm| arm.room);
         let room = rooms.fold(f64::INFINITY, f64::min);
-        let room = self.clearance(&arms[0].0.position, &all, room);
+        let room = self.clearance(&arms[0].frame.position, &all, room);
         let slender = |&cell: &usize| self.mesh.map(cell).aspect() > SLENDER;
         let least = SHORTEST * self.mesh.map(*cells.first()?).diagonal();
         if cells.iter().any(slender) || room <= least {
@@ -222,7 +222,11 @@ impl Search<'_> {
         let along = if end == 0 { ahead.map(|v| -v) } else { ahead };
         let mut frame = TipFrame::straight(arm, x, ahead, turned(&along));
         frame.shape = FrontShape::Corner;
-        Some((frame, norm(&sub(&x, &next)).min(range[1] - range[0])))
+        Some(Ending {
+            frame,
+            room: norm(&sub(&x, &next)).min(range[1] - range[0]),
+            arms: vec![arm],
+        })
     }
 
     /// The node of the ramp that lies deepest in each wedge; `None` where one has none farther than `least` from the arms.
@@ -232,16 +236,16 @@ impl Search<'_> {
         core: &BTreeSet<u32>,
         least: f64,
     ) -> Option<Vec<u32>> {
-        let x = arms[0].0.position;
+        let x = arms[0].frame.position;
         let angle = |v: &Point| v[1].atan2(v[0]).rem_euclid(TAU);
-        let angles = arms.iter().map(|arm| angle(&arm.0.ahead.map(|v| -v)));
+        let angles = arms.iter().map(|arm| angle(&arm.frame.ahead.map(|v| -v)));
         let angles: Vec<f64> = angles.collect();
         let mut found = vec![(least, None); arms.len()];
         for &node in core {
             let place = &self.mesh.nodes[node as usize];
             let own = angle(&sub(place, &x));
             let wedge = angles.iter().filter(|a| **a <= own).count() % arms.len();
-            let depth = self.away_from(place, arms.iter().map(|arm| arm.0.crack));
+            let depth = self.away_from(place, arms.iter().map(|arm| arm.frame.crack));
             if depth > found[wedge].0 {
                 found[wedge] = (depth, Some(node));
             }
@@ -251,18 +255,16 @@ impl Search<'_> {
 
     /// The arms whose functions every node carries: those beside it, and one more.
     fn sets(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> Vec<(u32, usize)> {
-        let beside = |node: u32, (frame, _): &Ending| {
-            let cells = self.near.cells_around(&BTreeSet::from([node]));
-            cells.into_iter().any(|cell| {
-                let map = self.mesh.map(cell);
-                let slack = GRAZING * map.diagonal();
-                let mut path = self.arms[frame.crack].path.windows(2);
-                path.any(|w| meets(&map, &w[0].x, &w[1].x, slack))
-            })
+        let cells: Vec<BTreeSet<usize>> = (arms.iter())
+            .map(|arm| self.cells_of(arm.frame.crack).into_iter().collect())
+            .collect();
+        let beside = |node: u32, arm: usize| {
+            let around = self.near.cells_around(&BTreeSet::from([node]));
+            !around.is_disjoint(&cells[arm])
         };
         let of_node = |&node: &u32| {
             let (mut own, others): (Vec<usize>, Vec<usize>) =
-                (0..arms.len()).partition(|&arm| beside(node, &arms[arm]));
+                (0..arms.len()).partition(|&arm| beside(node, arm));
             own.extend(others.first());
             own.into_iter().map(move |arm| (node, arm))
         };

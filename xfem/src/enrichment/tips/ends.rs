@@ -1,20 +1,41 @@
 //! The crack behind a tip: how far it leads away from it, and the frame of its functions.
 
-use crate::cut::crack::{Crack, Geometry};
+use crate::cut::arrangement::{BEND, TracedTip};
+use crate::cut::crack::{Crack, End, Geometry, on_crack};
 use crate::cut::placement;
-use crate::cut::trace::TracedTip;
 use crate::geometry::curve::Curve;
+use crate::geometry::polygon::bends;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub};
 
 use super::Search;
+
+/// The end of a crack as branch functions see it.
+#[derive(Debug, Clone)]
+pub(super) struct Ending {
+    /// Coordinates of the functions.
+    pub frame: TipFrame,
+    /// Length of the crack behind it that they know [m].
+    pub room: f64,
+    /// Arms over which they jump.
+    pub arms: Vec<usize>,
+}
+
+/// A crack from a tip on, as long as it leads away from there.
+struct Run {
+    /// Its vertices [m].
+    path: Vec<Point>,
+    arms: Vec<usize>,
+    /// How far the tip's own arm leads away [m].
+    own: f64,
+}
 
 impl Search<'_> {
     /// From where to where an arm parts the cells [m].
     pub(super) fn range(&self, arm: usize) -> [f64; 2] {
         let mut range = self.arms[arm].range;
         for &number in self.tips_of[arm].iter().filter(|&&t| !self.kept[t]) {
-            let tip = &self.trace.tips[number];
+            let tip = &self.arrangement.tips[number];
             range[tip.end] = tip.entry;
         }
         for (cell, chain) in self.chains_of[arm].iter().filter(|c| self.divides(c.1)) {
@@ -32,50 +53,62 @@ impl Search<'_> {
         range
     }
 
-    /// Length of the crack behind a tip that its branch functions know [m].
-    pub(super) fn room(&self, number: usize) -> f64 {
-        let tip = &self.trace.tips[number];
+    /// The end at a tip: along its arm, and on where the crack goes straight on through meetings, which the functions must not
+    /// tell from the arm; where the arm is too short for its cells, along the crack around bends, too.
+    pub(super) fn end(&self, number: usize) -> Ending {
+        let tip = &self.arrangement.tips[number];
         let arm = &self.arms[tip.arm];
-        let from = arm.range[tip.end];
-        let other = (self.range(tip.arm)[1 - tip.end] - from).abs();
+        let frame = placement::tip_frame(tip.arm, arm, tip.end, &tip.x);
         let Geometry::Curve(Curve::Chain(_)) = &arm.geometry else {
-            return other;
+            return Ending {
+                frame,
+                room: (self.range(tip.arm)[1 - tip.end] - arm.range[tip.end]).abs(),
+                arms: vec![tip.arm],
+            };
         };
-        let vertices = arm.path.iter().map(|vertex| vertex.s);
-        let kinks = vertices.filter(|s| *s > arm.range[0] && *s < arm.range[1]);
-        kinks.map(|s| (s - from).abs()).fold(other, f64::min)
-    }
-
-    /// Frame of a tip and the length behind it that its functions know [m]: along its arm; where that is too short for its cells,
-    /// along the crack around bends and through meetings.
-    pub(super) fn end(&self, number: usize) -> (TipFrame, f64) {
-        let tip = &self.trace.tips[number];
-        let frame = placement::tip_frame(tip.arm, &self.arms[tip.arm], tip.end, &tip.x);
-        let arm = (frame, self.room(number));
+        let gentle = self.run(tip, BEND.cos());
+        let own = gentle.own;
+        let end = self.ending_of(&frame, gentle, own);
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
-        if !self.is_blocked(&arm, &nodes, &self.cut_off(&arm, &nodes)) {
-            return arm;
+        if !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes)) {
+            return end;
         }
-        let path = self.leading_away(tip);
-        if path.len() < 3 {
-            return arm;
-        }
-        let mut bent = arm.clone();
-        bent.1 = path.last().map_or(0.0, |x| norm(&sub(x, &tip.x)));
-        bent.0.shape = FrontShape::Bent(path);
-        if bent.1 > arm.1 { bent } else { arm }
+        let whole = self.run(tip, -1.0);
+        let room = whole.path.last().map_or(0.0, |x| norm(&sub(x, &tip.x)));
+        let bent = self.ending_of(&frame, whole, room);
+        if bent.room > end.room { bent } else { end }
     }
 
-    /// The vertices of a crack from a tip on, as long as it leads away from there.
-    fn leading_away(&self, tip: &TracedTip) -> Vec<Point> {
+    fn ending_of(&self, frame: &TipFrame, run: Run, room: f64) -> Ending {
+        let slack = on_crack(self.lengths.smallest, self.lengths.rounding);
+        let mut frame = frame.clone();
+        let bent = bends(&run.path, slack);
+        if bent.len() > 2 {
+            frame.shape = FrontShape::Bent(bent.into_iter().map(|k| run.path[k]).collect());
+        }
+        Ending {
+            frame,
+            room,
+            arms: run.arms,
+        }
+    }
+
+    /// The crack behind a tip, as long as it leads away from there and turns from arm to arm by no more than an angle of a given
+    /// cosine.
+    fn run(&self, tip: &TracedTip, least: f64) -> Run {
         /// Least cosine of its angle with the radius, 75 degrees: θ turns with the crack by the tangent of that, at every radius.
         const LEADING: f64 = 0.25;
-        let mut path = vec![tip.x];
         let (mut arm, end) = (tip.arm, tip.end);
+        let mut run = Run {
+            path: vec![tip.x],
+            arms: vec![arm],
+            own: 0.0,
+        };
+        let mut before: Option<Point> = None;
         loop {
             let (own, range) = (&self.arms[arm], self.range(arm));
             let Geometry::Curve(curve @ Curve::Chain(_)) = &own.geometry else {
-                return path;
+                return run;
             };
             let whole = range[1 - end] == own.range[1 - end];
             let inner = own.path.iter().filter(|v| v.s > range[0] && v.s < range[1]);
@@ -83,7 +116,6 @@ impl Search<'_> {
             if end == 1 {
                 next.reverse();
             }
-            // Where it meets others the path was moved there, the curve was not.
             let last = if end == 1 {
                 own.path.first()
             } else {
@@ -91,13 +123,23 @@ impl Search<'_> {
             };
             let last = last.filter(|_| whole).map(|v| v.x);
             next.push(last.unwrap_or_else(|| curve.at(range[1 - end]).0));
-            for x in next {
-                let from = path[path.len() - 1];
+            for (k, x) in next.into_iter().enumerate() {
+                let from = run.path[run.path.len() - 1];
                 let (back, on) = (sub(&from, &tip.x), sub(&x, &from));
-                if dot(&back, &on) < LEADING * norm(&back) * norm(&on) {
-                    return path;
+                let turns = |before: Point| dot(&before, &on) < least * norm(&before) * norm(&on);
+                if dot(&back, &on) < LEADING * norm(&back) * norm(&on)
+                    || k == 0 && before.is_some_and(turns)
+                {
+                    return run;
                 }
-                path.push(x);
+                if k == 0 && arm != tip.arm {
+                    run.arms.push(arm);
+                }
+                run.path.push(x);
+                before = Some(on);
+                if arm == tip.arm {
+                    run.own = norm(&sub(&x, &tip.x));
+                }
             }
             let other = if end == 1 {
                 arm.wrapping_sub(1)
@@ -109,8 +151,9 @@ impl Search<'_> {
                 let begins = next.range[end] == own.range[1 - end] && range[end] == next.range[end];
                 whole && next.number == own.number && begins && range[0] < range[1]
             };
-            if self.arms.get(other).filter(follows).is_none() {
-                return path;
+            let free = [End::Free, End::Mouth].contains(&own.ends[1 - end]);
+            if free || self.arms.get(other).filter(follows).is_none() {
+                return run;
             }
             arm = other;
         }

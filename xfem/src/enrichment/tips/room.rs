@@ -2,53 +2,47 @@
 
 use std::collections::BTreeSet;
 
+use crate::cut::arrangement::TracedTip;
 use crate::cut::crack::Tip;
 use crate::cut::part::Place;
-use crate::cut::trace::TracedTip;
+use crate::cut::partition::Partition;
 use crate::geometry::Point;
 use crate::geometry::boxes::around;
 use crate::geometry::polygon::{self, segment_distance};
-use crate::geometry::tip_frame::{FrontShape, TipFrame};
+use crate::geometry::tip_frame::FrontShape;
 
-use super::super::supports::parted_from;
 use super::super::zone::Zone;
-use super::{GRAZING, SHARE, Search};
+use super::ends::Ending;
+use super::{GRAZING, LONGER, SHARE, Search};
 
 /// Nodes around a ramp are no farther away than this, in lengths of the arm: seen from there a short arm, or one in long cells, is
 /// nothing, and its functions become dependent.
 const FAR: f64 = 4.0;
 
 impl Search<'_> {
-    /// Parts of the cells of some nodes that others than the arms along which the functions of a tip jump part from it.
-    pub(super) fn cut_off(
-        &self,
-        (frame, _): &(TipFrame, f64),
-        nodes: &BTreeSet<u32>,
-    ) -> BTreeSet<Place> {
-        let arms = 0..self.arms.len();
-        let own = |&arm: &usize| self.arms[arm].jumps_with(frame, &self.arms[frame.crack]);
-        let own: Vec<usize> = arms.filter(own).collect();
+    /// Parts of the cells of some nodes that others than the arms along which the functions of an end jump part from it.
+    pub(super) fn cut_off(&self, end: &Ending, nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
         let cells = self.near.cells_around(nodes);
-        let (x, trace) = (&frame.position, self.trace);
-        parted_from(self.mesh, &own, x, &cells, trace, &self.partitions)
+        self.joiner()
+            .parted_from(&end.arms, &end.frame.position, &cells)
     }
 
     /// Whether a cell of some nodes holds, where it is not cut off, a part of the line behind a tip beyond its room.
     pub(super) fn is_blocked(
         &self,
-        (frame, room): &(TipFrame, f64),
+        end: &Ending,
         nodes: &BTreeSet<u32>,
         cut_off: &BTreeSet<Place>,
     ) -> bool {
         let (size, _) = self.lengths.extent;
-        let line = frame.behind(*room, size, 0.1 * self.lengths.smallest);
+        let line = (end.frame).behind(end.room, size, 0.1 * self.lengths.smallest);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
             let slack = GRAZING * map.diagonal();
             let enters = |outline: &[Point]| {
                 let mut line = line.iter();
-                line.any(|[p, q]| polygon::meets(outline, p, q, slack))
+                line.any(|[p, q]| polygon::meets(outline, [p, q], slack, LONGER * map.diagonal()))
             };
             let whole = cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none();
             match self.partitions.get(&cell) {
@@ -65,8 +59,8 @@ impl Search<'_> {
     }
 
     /// The nodes around a tip: within the largest radius that leaves it alone.
-    pub(super) fn zone(&self, tip: &TracedTip, end: &(TipFrame, f64)) -> Zone {
-        let (arms, room) = ([end.clone()], end.1);
+    pub(super) fn zone(&self, tip: &TracedTip, end: &Ending) -> Zone {
+        let (arms, room) = ([end.clone()], end.room);
         let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let mut zone = match radius {
@@ -75,9 +69,13 @@ impl Search<'_> {
         };
         if zone.core.is_empty() {
             zone.cut_off = self.cut_off(end, &zone.nodes);
-        } else if arms[0].0.shape == FrontShape::Straight && zone.surplus.is_empty() {
+        } else if matches!(end.frame.shape, FrontShape::Straight | FrontShape::Bent(_))
+            && zone.surplus.is_empty()
+        {
+            // Around a bend the relations between the functions hold nearly.
             zone.surplus = self.deepest(&arms, &zone.core, 0.0).unwrap_or_default();
         }
+        zone.arms.clone_from(&end.arms);
         // Where all of a node's cells are cut off it carries nothing.
         zone.nodes.retain(|&node| self.lives(node, &zone.cut_off));
         zone
@@ -103,15 +101,14 @@ impl Search<'_> {
 
     /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
     /// `arms`: their frames with the lengths that these know.
-    pub(super) fn within(
-        &self,
-        radius: f64,
-        arms: &[(TipFrame, f64)],
-        at_tip: BTreeSet<u32>,
-    ) -> Zone {
-        let (near, frame) = (&self.near, &arms[0].0);
-        let own: Vec<usize> = arms.iter().map(|arm| arm.0.crack).collect();
-        let far = FAR * arms.iter().map(|arm| arm.1).fold(f64::INFINITY, f64::min);
+    pub(super) fn within(&self, radius: f64, arms: &[Ending], at_tip: BTreeSet<u32>) -> Zone {
+        let (near, frame) = (&self.near, &arms[0].frame);
+        let own: Vec<usize> = arms.iter().map(|arm| arm.frame.crack).collect();
+        let far = FAR
+            * arms
+                .iter()
+                .map(|arm| arm.room)
+                .fold(f64::INFINITY, f64::min);
         Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
             let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
             nodes.iter().all(close)
@@ -123,18 +120,13 @@ impl Search<'_> {
     /// Whether none but some arms run through some cells.
     pub(super) fn holds_only(&self, arms: &[usize], cells: &BTreeSet<usize>) -> bool {
         let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
-        let mut faces = parted.flat_map(|p| &p.faces);
-        faces.all(|f| arms.contains(&f.crack))
+        let mut own = parted.flat_map(Partition::arms);
+        own.all(|arm| arms.contains(&arm))
     }
 
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
     /// of a narrow ligament feels its end, too.
-    pub(super) fn beyond(
-        &self,
-        tip: &TracedTip,
-        end: &(TipFrame, f64),
-        zone: &Zone,
-    ) -> Option<Zone> {
+    pub(super) fn beyond(&self, tip: &TracedTip, end: &Ending, zone: &Zone) -> Option<Zone> {
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
             let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
@@ -150,12 +142,13 @@ impl Search<'_> {
         let lives = !beyond.is_empty() && !self.is_blocked(end, &nodes, &cut_off);
         lives.then(|| Zone {
             cut_off,
+            arms: end.arms.clone(),
             ..Zone::plain(nodes)
         })
     }
 
     /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
-    pub(super) fn any_blocked(&self, arms: &[(TipFrame, f64)], nodes: &BTreeSet<u32>) -> bool {
+    pub(super) fn any_blocked(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> bool {
         let none = BTreeSet::new();
         arms.iter().any(|arm| self.is_blocked(arm, nodes, &none))
     }

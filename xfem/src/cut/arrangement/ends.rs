@@ -1,0 +1,263 @@
+//! Modelling lengths at ends of cracks: what an end nearly touches is joined with it, and a crack beside which one ends is parted there.
+
+use std::collections::BTreeMap;
+
+use crate::cut::crack::{Crack, Geometry};
+use crate::cut::placement::cells_at;
+use crate::geometry::boxes::{Boxes, around};
+use crate::geometry::curve::Curve;
+use crate::geometry::polygon::{segment_distance, segment_foot};
+use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, root, sub, unit, unite};
+
+use super::around::Around;
+use super::snap::Net;
+
+/// An end closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
+/// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
+const JOINED: f64 = 1e-2;
+
+/// How far an end is followed to where it really crosses, in the same units: so it keeps its direction.
+const FOLLOWED: f64 = 10.0 * JOINED;
+
+/// A crack that another's end is nearer to than this, in the same units, is parted at the foot of that end.
+const BESIDE: f64 = 1.0;
+
+/// Lines more parallel than this do not cross where anybody would follow them, as sine of their angle.
+const PARALLEL: f64 = 1e-9;
+
+/// An end of a polyline.
+#[derive(Clone, Copy)]
+struct End {
+    line: usize,
+    /// Its last point; otherwise its first.
+    last: bool,
+    x: Point,
+    /// Unit direction out of the crack.
+    ahead: Point,
+}
+
+/// Joins the ends of polylines with what they nearly touch, all as they were put: by no order. The ends that were moved: which line,
+/// from where and to where [m].
+pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize, Point, Point)> {
+    let size = around.lengths.smallest;
+    let inside = |end: &End| !cells_at(around.mesh, &end.x).is_empty();
+    let ends: Vec<End> = (0..lines.len())
+        .flat_map(|line| ends_of(line, &lines[line]))
+        .filter(inside)
+        .collect();
+    let boxes = Boxes::new(lines.iter().map(|line| self::around(line, JOINED * size)));
+    let mut moved = Vec::new();
+    for group in groups(&ends, size) {
+        let own: Vec<usize> = group.iter().map(|end| end.line).collect();
+        let met = group.iter().filter_map(|end| {
+            let near = boxes.meeting(&[end.x; 2]).into_iter();
+            let others = near.filter(|line| !own.contains(line));
+            let places = others.filter_map(|line| met(end, &lines[line], size));
+            // The first that it runs into.
+            let along = |x: &Point| dot(&sub(x, &end.x), &end.ahead);
+            places.min_by(|a, b| along(a).total_cmp(&along(b)))
+        });
+        let middle = mean(&group.iter().map(|end| end.x).collect::<Vec<_>>());
+        let away = |x: &Point| norm(&sub(x, &middle));
+        let met = met.min_by(|a, b| away(a).total_cmp(&away(b)));
+        let common = met.or_else(|| common_place(&group, size));
+        for end in &group {
+            if let Some(to) = common.or_else(|| way_out(around, end)) {
+                // A place that was put there keeps its digits.
+                if norm(&sub(&to, &end.x)) > around.lengths.rounding {
+                    moved.push((*end, to));
+                }
+            }
+        }
+    }
+    for (end, to) in &moved {
+        let place = if end.last {
+            lines[end.line].len() - 1
+        } else {
+            0
+        };
+        lines[end.line][place] = *to;
+    }
+    moved
+        .into_iter()
+        .map(|(end, to)| (end.line, end.x, to))
+        .collect()
+}
+
+/// The ends of an open polyline.
+fn ends_of(line: usize, points: &[Point]) -> Vec<End> {
+    let &[first, second, ..] = points else {
+        return Vec::new();
+    };
+    let (last, before) = (points[points.len() - 1], points[points.len() - 2]);
+    if first == last {
+        return Vec::new();
+    }
+    let end = |last: bool, x: Point, before: Point| End {
+        line,
+        last,
+        x,
+        ahead: unit(&sub(&x, &before)),
+    };
+    vec![end(false, first, second), end(true, last, before)]
+}
+
+/// Ends that are that close to each other, also by others in between.
+fn groups(ends: &[End], size: f64) -> Vec<Vec<End>> {
+    let boxes = Boxes::new(ends.iter().map(|end| [end.x; 2]));
+    let mut parent: Vec<usize> = (0..ends.len()).collect();
+    for (i, end) in ends.iter().enumerate() {
+        for j in boxes.meeting(&around(&[end.x], JOINED * size)) {
+            if norm(&sub(&end.x, &ends[j].x)) <= JOINED * size && ends[j].line != end.line {
+                unite(&mut parent, i, j);
+            }
+        }
+    }
+    let mut groups: BTreeMap<usize, Vec<End>> = BTreeMap::new();
+    for (i, end) in ends.iter().enumerate() {
+        groups.entry(root(&mut parent, i)).or_default().push(*end);
+    }
+    groups.into_values().collect()
+}
+
+/// Where the line of an end crosses a polyline that it nearly touches, the nearest such place.
+fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
+    let close = |w: &&[Point]| segment_distance(&end.x, &w[0], &w[1]) <= FOLLOWED * size;
+    let mut segments = points.windows(2).filter(close);
+    let away = |w: &[Point]| segment_distance(&end.x, &w[0], &w[1]);
+    let nearest = segments.clone().map(away).fold(f64::INFINITY, f64::min);
+    if nearest > JOINED * size {
+        return None;
+    }
+    if nearest == 0.0 {
+        return Some(end.x);
+    }
+    let along = |x: &Point| norm(&sub(x, &end.x));
+    let places = segments.by_ref().filter_map(|w| {
+        let (d, from) = (sub(&w[1], &w[0]), sub(&w[0], &end.x));
+        let turn = cross(&end.ahead, &d)[2];
+        if turn.abs() <= PARALLEL * norm(&d) {
+            return None;
+        }
+        let [t, share] = [
+            cross(&from, &d)[2] / turn,
+            cross(&from, &end.ahead)[2] / turn,
+        ];
+        let inside = (0.0..=1.0).contains(&share) && t.abs() <= FOLLOWED * size;
+        inside.then(|| add_scaled(&w[0], share, &d))
+    });
+    places.min_by(|a, b| along(a).total_cmp(&along(b)))
+}
+
+/// The place that several ends are joined in: where their lines cross, so that they keep their directions, or halfway.
+fn common_place(group: &[End], size: f64) -> Option<Point> {
+    let first = group.first()?;
+    if group.len() < 2 || group.iter().all(|end| end.x == first.x) {
+        return (group.len() > 1).then_some(first.x);
+    }
+    let mut crossings = Vec::new();
+    for (i, one) in group.iter().enumerate() {
+        for two in &group[..i] {
+            let turn = cross(&one.ahead, &two.ahead)[2];
+            let t = cross(&sub(&two.x, &one.x), &two.ahead)[2] / turn;
+            let x = add_scaled(&one.x, t, &one.ahead);
+            let near = |end: &End| norm(&sub(&x, &end.x)) <= FOLLOWED * size;
+            if turn.abs() > PARALLEL && group.iter().all(near) {
+                crossings.push(x);
+            }
+        }
+    }
+    if crossings.is_empty() {
+        crossings = group.iter().map(|end| end.x).collect();
+    }
+    Some(mean(&crossings))
+}
+
+/// Where an end that nearly touches a side of the body leaves it.
+fn way_out(around: &Around<'_>, end: &End) -> Option<Point> {
+    let size = around.lengths.smallest;
+    let sides = around.edges_near(&[end.x], JOINED * size);
+    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+    let before = sides.filter_map(|edge| {
+        let [p, q] = edge.map(|node| around.at(node));
+        let (d, from) = (sub(q, p), sub(p, &end.x));
+        let turn = cross(&end.ahead, &d)[2];
+        let [t, share] = [
+            cross(&from, &d)[2] / turn,
+            cross(&from, &end.ahead)[2] / turn,
+        ];
+        let close = segment_distance(&end.x, p, q) <= JOINED * size;
+        (close && (0.0..=1.0).contains(&share) && t > 0.0).then_some(t)
+    });
+    let nearest = before.fold(f64::INFINITY, f64::min);
+    (nearest <= FOLLOWED * size).then(|| add_scaled(&end.x, nearest, &end.ahead))
+}
+
+impl Net<'_> {
+    /// Parts straight cracks at the feet of ends that stop beside them: what they carry is singular there, too. The nearest come
+    /// first, then those near the middle of the body, however the cracks are ordered.
+    pub fn part_at_feet(&mut self, cracks: &[Crack]) {
+        let size = self.around.lengths.smallest;
+        let (extent, middle) = self.around.lengths.extent;
+        self.measure(cracks);
+        let straight =
+            |line: usize| matches!(cracks[line].geometry, Geometry::Curve(Curve::Chain(_)));
+        let points = |line: usize| -> Vec<Point> {
+            self.lines[line]
+                .links
+                .iter()
+                .map(|link| *self.at(link))
+                .collect()
+        };
+        let polylines: Vec<Vec<Point>> = (0..self.lines.len()).map(points).collect();
+        let boxes = Boxes::new(polylines.iter().map(|line| around(line, BESIDE * size)));
+        let mut feet = Vec::new();
+        for end in (0..polylines.len()).flat_map(|line| ends_of(line, &polylines[line])) {
+            if cells_at(self.around.mesh, &end.x).is_empty() {
+                continue;
+            }
+            let near = boxes.meeting(&[end.x; 2]).into_iter();
+            for line in near.filter(|&line| line != end.line && straight(line)) {
+                let on =
+                    polylines[line]
+                        .windows(2)
+                        .zip(&self.lines[line].links)
+                        .map(|(w, from)| {
+                            let foot = segment_foot(&end.x, &w[0], &w[1]);
+                            (
+                                norm(&sub(&end.x, &foot)),
+                                from.s + norm(&sub(&foot, &w[0])),
+                                foot,
+                            )
+                        });
+                let nearest = on.min_by(|a, b| a.0.total_cmp(&b.0));
+                if let Some((away, s, foot)) = nearest.filter(|foot| foot.0 <= BESIDE * size) {
+                    let from_middle = norm(&sub(&end.x, &middle)) / extent;
+                    let order = [away / size, from_middle].map(|v| (v * 1e9).round() as i64);
+                    feet.push((order, line, s, foot));
+                }
+            }
+        }
+        feet.sort_by_key(|foot| foot.0);
+        for (_, line, s, x) in feet {
+            let uses = self.uses();
+            let links = &self.lines[line].links;
+            // Within a cell one corner does.
+            let taken = links.iter().any(|link| {
+                let met = uses.get(link.vertex).is_none_or(|&uses| uses > 1) || link.foot;
+                let by = if met { BESIDE } else { FOLLOWED };
+                (link.given || met) && (link.s - s).abs() <= by * size
+            });
+            if let (false, Some(k)) = (
+                taken,
+                links.windows(2).position(|w| s > w[0].s && s < w[1].s),
+            ) {
+                let t = (s - links[k].s) / (links[k + 1].s - links[k].s);
+                let vertex = self.vertices.len();
+                self.vertices.push(self.around.vertex(&x));
+                self.insert([((line, k), vec![(t, vertex)])].into());
+                self.lines[line].links[k + 1].foot = true;
+            }
+        }
+    }
+}
