@@ -4,6 +4,7 @@
 mod common;
 
 mod accuracy;
+mod arrangement;
 mod conforming;
 mod corners;
 mod energy;

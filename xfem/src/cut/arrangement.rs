@@ -28,7 +28,7 @@ use crate::mesh::{Lengths, Mesh};
 use self::around::Around;
 use self::snap::Net;
 pub use self::walk::{Chain, TracedTip};
-use super::crack::{Crack, Geometry};
+use super::crack::{Crack, Geometry, on_crack};
 
 /// Vertices closer than this are one, and lie on a node or edge that close, in shortest edges there: far above rounding, far below
 /// what an answer tells.
@@ -150,7 +150,8 @@ impl Arrangement {
                 let points: Vec<Point> = crack.path.iter().map(|v| v.x).collect();
                 match crack.geometry {
                     Geometry::Curve(Curve::Chain(_)) => {
-                        let kept = bends(&points, DELTA * lengths.smallest).into_iter();
+                        let slack = on_crack(lengths.smallest, lengths.rounding);
+                        let kept = bends(&points, slack).into_iter();
                         kept.map(|k| points[k]).collect()
                     }
                     _ => points,

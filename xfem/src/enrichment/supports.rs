@@ -15,7 +15,7 @@ use crate::cut::arrangement::Arrangement;
 use crate::cut::crack::{Crack, first_on};
 use crate::cut::part::Place;
 use crate::cut::partition::Partition;
-use crate::geometry::polygon::{self, border_distance, space_area};
+use crate::geometry::polygon::{self, space_area};
 use crate::geometry::{Point, root, unite};
 use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
@@ -104,12 +104,12 @@ pub(super) struct Joiner<'a> {
 }
 
 impl Joiner<'_> {
-    /// Parts of some cells that a place of a plane body, in the closure of regions of theirs, is parted from by faces of other cracks
-    /// than some arms.
+    /// Parts of some cells that an end in the plane, in the closure of the cells `at`, is parted from by faces of other cracks than some
+    /// arms.
     pub fn parted_from(
         &self,
         arms: &[usize],
-        x: &Point,
+        (x, at): (&Point, &[usize]),
         cells: &BTreeSet<usize>,
     ) -> BTreeSet<Place> {
         let divided = || {
@@ -147,13 +147,12 @@ impl Joiner<'_> {
             let pairs = pairs.chain(beyond.map(|pair| pair.map(|region| (cell, region))));
             pairs.for_each(&mut join);
         }
-        let near = |&&(cell, region): &&Place| {
-            let map = self.mesh.map(cell);
-            let outline = match self.partitions.get(&cell) {
-                None => &map[..],
-                Some(partition) => &partition.parts[region].polygon,
-            };
-            polygon::contains(outline, x) || border_distance(outline, x) <= 1e-9 * map.diagonal()
+        let near = |&&(cell, region): &&Place| match self.partitions.get(&cell) {
+            None => at.contains(&cell),
+            Some(partition) => {
+                let outline = &partition.parts[region].polygon;
+                outline.contains(x) || at == [cell] && polygon::contains(outline, x)
+            }
         };
         let held: BTreeSet<usize> = (places.iter().filter(near))
             .filter_map(|place| Some(root(&mut parent, number(place)?)))

@@ -1,8 +1,9 @@
 //! Modelling lengths at ends of cracks: what an end nearly touches is joined with it, and a crack beside which one ends is parted there.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::cut::crack::{Crack, Geometry};
+use crate::cut::crack::{Crack, Geometry, Tip};
 use crate::cut::placement::cells_at;
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::curve::Curve;
@@ -11,6 +12,7 @@ use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, root, sub, unit
 
 use super::around::Around;
 use super::snap::Net;
+use super::{DELTA, LINE};
 
 /// An end closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
 /// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
@@ -53,9 +55,9 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
             let near = boxes.meeting(&[end.x; 2]).into_iter();
             let others = near.filter(|line| !own.contains(line));
             let places = others.filter_map(|line| met(end, &lines[line], size));
-            // The first that it runs into.
-            let along = |x: &Point| dot(&sub(x, &end.x), &end.ahead);
-            places.min_by(|a, b| along(a).total_cmp(&along(b)))
+            // Where it lies on one already, or the first that it runs into.
+            let key = |x: &Point| (*x != end.x, dot(&sub(x, &end.x), &end.ahead));
+            places.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
         });
         let middle = mean(&group.iter().map(|end| end.x).collect::<Vec<_>>());
         let away = |x: &Point| norm(&sub(x, &middle));
@@ -129,7 +131,8 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
     if nearest > JOINED * size {
         return None;
     }
-    if nearest == 0.0 {
+    // It lies there: what it runs through is snapped to it.
+    if nearest <= LINE * DELTA * size {
         return Some(end.x);
     }
     let along = |x: &Point| norm(&sub(x, &end.x));
@@ -200,8 +203,11 @@ impl Net<'_> {
         let size = self.around.lengths.smallest;
         let (extent, middle) = self.around.lengths.extent;
         self.measure(cracks);
-        let straight =
-            |line: usize| matches!(cracks[line].geometry, Geometry::Curve(Curve::Chain(_)));
+        // Both with functions, which is what the corner at the foot is for.
+        let carries = |line: usize| cracks[line].tip != Tip::None;
+        let straight = |line: usize| {
+            carries(line) && matches!(cracks[line].geometry, Geometry::Curve(Curve::Chain(_)))
+        };
         let points = |line: usize| -> Vec<Point> {
             self.lines[line]
                 .links
@@ -213,7 +219,7 @@ impl Net<'_> {
         let boxes = Boxes::new(polylines.iter().map(|line| around(line, BESIDE * size)));
         let mut feet = Vec::new();
         for end in (0..polylines.len()).flat_map(|line| ends_of(line, &polylines[line])) {
-            if cells_at(self.around.mesh, &end.x).is_empty() {
+            if !carries(end.line) || cells_at(self.around.mesh, &end.x).is_empty() {
                 continue;
             }
             let near = boxes.meeting(&[end.x; 2]).into_iter();

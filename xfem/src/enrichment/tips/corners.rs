@@ -24,9 +24,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use crate::cut::arrangement::TracedTip;
+use crate::cut::arrangement::{BEND, On, TracedTip};
 use crate::cut::crack::{End, Geometry, Tip};
-use crate::cut::placement::cells_at;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub, unit};
@@ -46,9 +45,6 @@ const SHORT: f64 = 2.0;
 /// One shorter than this, in edges, has no multipliers of its own there: the displacement could not balance them.
 const LONG: f64 = 0.3;
 
-/// Arms on one line, by the cosine of their angle.
-const STRAIGHT: f64 = 1.0 - 1e-9;
-
 /// A place where arms with branch functions bend or meet.
 #[derive(Debug, Clone)]
 pub struct Corner {
@@ -67,7 +63,10 @@ impl Search<'_> {
     /// Adds the functions of the corners that have room for them.
     pub(super) fn add_corners(&self, tips: &mut Tips) {
         for (x, ends) in self.meetings() {
-            let cells = cells_at(self.mesh, &x);
+            let cells = ends
+                .iter()
+                .find_map(|&end| self.cells_at(end))
+                .unwrap_or_default();
             let nodes = self.mesh.nodes_of(cells.iter().copied());
             let sizes = nodes.iter();
             let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
@@ -98,6 +97,23 @@ impl Search<'_> {
             }));
             tips.frames.extend(arms.into_iter().map(|arm| arm.frame));
         }
+    }
+
+    /// Cells whose closure holds an end of an arm; `None` outside of the body.
+    fn cells_at(&self, (arm, end): ArmEnd) -> Option<Vec<usize>> {
+        let mut chains = self.chains_of[arm].iter().map(|own| own.1);
+        let last = chains.find(|chain| chain.range[end] == self.arms[arm].range[end])?;
+        let vertex = match end {
+            0 => last.vertices.first(),
+            _ => last.vertices.last(),
+        };
+        let around = |node: u32| self.near.cells_around(&BTreeSet::from([node]));
+        Some(match self.arrangement.vertices[vertex?.vertex].on {
+            On::Node(node) => around(node).into_iter().collect(),
+            On::Edge([i, j]) => around(i).intersection(&around(j)).copied().collect(),
+            On::Cell(cell) => vec![cell],
+            On::Outside => Vec::new(),
+        })
     }
 
     /// Two or more ends of arms in one place. By their distances from the middle of the body: in the same order however the
@@ -145,8 +161,9 @@ impl Search<'_> {
                 _ => return None,
             }
         }
+        // Parted by a meeting alone, two arms of a crack are one.
         if let [one, two] = arms.as_slice()
-            && dot(&one.frame.ahead, &two.frame.ahead) < -STRAIGHT
+            && self.goes_on(one.frame.crack, two.frame.crack)
         {
             let near = |tip: &&TracedTip| self.carries(tip.arm) && norm(&sub(&tip.x, x)) <= size;
             others.extend(self.arrangement.tips.iter().filter(near).map(|tip| tip.arm));
@@ -155,6 +172,18 @@ impl Search<'_> {
             }
         }
         (1..=MOST).contains(&arms.len()).then_some((arms, others))
+    }
+
+    /// Whether a crack goes on from one of two arms to the other, without a bend that parts it.
+    fn goes_on(&self, one: usize, two: usize) -> bool {
+        let [first, second] = [one.min(two), one.max(two)].map(|arm| &self.arms[arm]);
+        let follows = one.abs_diff(two) == 1 && first.number == second.number;
+        let [Some(to), Some(from)] = [first.path.windows(2).last(), second.path.windows(2).next()]
+        else {
+            return false;
+        };
+        let [a, b] = [to, from].map(|w| unit(&sub(&w[1].x, &w[0].x)));
+        follows && first.ends[1] == End::Meeting && dot(&a, &b) > BEND.cos()
     }
 
     /// Whether an arm is straight and asks for branch functions.
@@ -226,6 +255,7 @@ impl Search<'_> {
             frame,
             room: norm(&sub(&x, &next)).min(range[1] - range[0]),
             arms: vec![arm],
+            cells: self.cells_at((arm, end))?,
         })
     }
 

@@ -19,6 +19,8 @@ pub(super) struct Ending {
     pub room: f64,
     /// Arms over which they jump.
     pub arms: Vec<usize>,
+    /// Cells whose closure holds it.
+    pub cells: Vec<usize>,
 }
 
 /// A crack from a tip on, as long as it leads away from there.
@@ -64,22 +66,23 @@ impl Search<'_> {
                 frame,
                 room: (self.range(tip.arm)[1 - tip.end] - arm.range[tip.end]).abs(),
                 arms: vec![tip.arm],
+                cells: tip.cells.clone(),
             };
         };
         let gentle = self.run(tip, BEND.cos());
         let own = gentle.own;
-        let end = self.ending_of(&frame, gentle, own);
+        let end = self.ending_of(tip, &frame, gentle, own);
         let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
         if !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes)) {
             return end;
         }
         let whole = self.run(tip, -1.0);
         let room = whole.path.last().map_or(0.0, |x| norm(&sub(x, &tip.x)));
-        let bent = self.ending_of(&frame, whole, room);
+        let bent = self.ending_of(tip, &frame, whole, room);
         if bent.room > end.room { bent } else { end }
     }
 
-    fn ending_of(&self, frame: &TipFrame, run: Run, room: f64) -> Ending {
+    fn ending_of(&self, tip: &TracedTip, frame: &TipFrame, run: Run, room: f64) -> Ending {
         let slack = on_crack(self.lengths.smallest, self.lengths.rounding);
         let mut frame = frame.clone();
         let bent = bends(&run.path, slack);
@@ -90,6 +93,7 @@ impl Search<'_> {
             frame,
             room,
             arms: run.arms,
+            cells: tip.cells.clone(),
         }
     }
 

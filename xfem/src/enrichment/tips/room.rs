@@ -24,7 +24,7 @@ impl Search<'_> {
     pub(super) fn cut_off(&self, end: &Ending, nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
         let cells = self.near.cells_around(nodes);
         self.joiner()
-            .parted_from(&end.arms, &end.frame.position, &cells)
+            .parted_from(&end.arms, (&end.frame.position, &end.cells), &cells)
     }
 
     /// Whether a cell of some nodes holds, where it is not cut off, a part of the line behind a tip beyond its room.
