@@ -2,11 +2,14 @@
 
 pub mod boxes;
 mod branch_functions;
+pub mod chain;
 pub mod clip;
 pub mod crack_shape;
 pub mod curve;
+mod ears;
 pub mod ellipse;
 pub mod polygon;
+pub mod segments;
 pub mod tip_frame;
 
 /// A point or vector in space; the third entry is 0 in 2D.

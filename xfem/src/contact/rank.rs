@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use crate::geometry::boxes::{Boxes, no_nearer};
 use crate::geometry::{Point, add_scaled, norm, root, sub, unite};
 use crate::stiffness::inverse_iteration::smallest_eigenvalue;
 
@@ -115,13 +116,10 @@ fn search_group(
         let told: Vec<bool> = (0..dim).map(|k| !void(k)).collect();
         for point in *arm {
             let own = rows[point].iter().zip(&told).filter(|row| *row.1);
-            let mut own = own.map(|row| row.0);
-            let known = factor.len();
-            // All rows of a point, or none.
-            if own.all(|row| !weak(row) && factor.push(row.clone(), pivot)) {
+            let own: Vec<&Row> = own.map(|row| row.0).collect();
+            if own.iter().all(|row| !weak(row)) && factor.push(&own, pivot) {
                 owners.resize(factor.len(), *point);
             } else {
-                factor.truncate(known);
                 found.push(*point);
             }
         }
@@ -136,31 +134,25 @@ fn square(row: &Row) -> f64 {
     row.iter().map(|(_, v)| v * v).sum()
 }
 
-/// The rows kept so far and the Cholesky factor of their Gram matrix, row by row from the first entry that may not vanish.
+/// The Cholesky factor L of the Gram matrix of the rows kept so far: only its entries that may not vanish, so that arms that meet
+/// in whatever order cost no more than what couples them.
 #[derive(Default)]
 struct Factor {
-    rows: Vec<Row>,
-    /// First column and entries of every row of L, the pivot last.
-    lower: Vec<(usize, Vec<f64>)>,
-    /// Rows by unknown.
-    users: BTreeMap<usize, Vec<usize>>,
+    pivots: Vec<f64>,
+    /// Columns of L below the diagonal, as (row, entry). The first row is the next one that the column acts on, its parent in
+    /// the elimination tree.
+    columns: Vec<Vec<(usize, f64)>>,
+    /// By unknown: rows with their entries there.
+    users: BTreeMap<usize, Vec<(usize, f64)>>,
+    /// By row: a sum, 0 between calls; the last attempt to add one that met it.
+    sums: Vec<f64>,
+    met: Vec<usize>,
+    attempts: usize,
 }
 
 impl Factor {
     fn len(&self) -> usize {
-        self.rows.len()
-    }
-
-    fn truncate(&mut self, count: usize) {
-        for i in (count..self.rows.len()).rev() {
-            for (unknown, _) in &self.rows[i] {
-                if let Some(users) = self.users.get_mut(unknown) {
-                    users.retain(|&user| user != i);
-                }
-            }
-        }
-        self.rows.truncate(count);
-        self.lower.truncate(count);
+        self.pivots.len()
     }
 
     /// The row with the largest part in the forces that least resists, if that is next to nothing: inverse iteration.
@@ -173,58 +165,102 @@ impl Factor {
 
     /// x := (L Lᵀ)⁻¹ x.
     fn solve(&self, x: &mut [f64]) {
-        for (i, (start, entries)) in self.lower.iter().enumerate() {
-            let known = entries.iter().zip(&x[*start..i]);
-            let sum: f64 = known.map(|(l, v)| l * v).sum();
-            x[i] = (x[i] - sum) / entries[i - start];
+        let mut sums = vec![0.0; x.len()];
+        for (k, column) in self.columns.iter().enumerate() {
+            x[k] = (x[k] - sums[k]) / self.pivots[k];
+            column.iter().for_each(|&(i, l)| sums[i] += l * x[k]);
         }
-        for (i, (start, entries)) in self.lower.iter().enumerate().rev() {
-            x[i] /= entries[i - start];
-            for (l, k) in entries.iter().zip(*start..i) {
-                x[k] -= l * x[i];
-            }
+        for (k, column) in self.columns.iter().enumerate().rev() {
+            let below = column.iter().rev();
+            x[k] = below.fold(x[k], |rest, &(i, l)| rest - l * x[i]) / self.pivots[k];
         }
     }
 
-    /// Adds a row if its pivot reaches a least one.
-    fn push(&mut self, mut row: Row, least: f64) -> bool {
-        let length = square(&row).sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            return false;
-        }
-        row.iter_mut().for_each(|entry| entry.1 /= length);
-        let i = self.rows.len();
-        let mut products: BTreeMap<usize, f64> = BTreeMap::new();
-        for &(unknown, value) in &row {
-            for &j in self.users.get(&unknown).into_iter().flatten() {
-                let other = self.rows[j].iter().find(|entry| entry.0 == unknown);
-                *products.entry(j).or_default() += value * other.map_or(0.0, |entry| entry.1);
+    /// Adds some rows if their pivots reach a least one, all or none.
+    fn push(&mut self, rows: &[&Row], least: f64) -> bool {
+        let mut added = Vec::new();
+        for row in rows {
+            match self.push_row(row, least) {
+                Some(columns) => added.push((*row, columns)),
+                None => {
+                    added.into_iter().rev().for_each(|own| self.pop(own));
+                    return false;
+                }
             }
         }
-        let first = products.keys().next().copied().unwrap_or(i);
-        // L y = s, from the first product on.
-        let mut y: Vec<f64> = Vec::with_capacity(i - first + 1);
-        for j in first..i {
-            let (start, entries) = &self.lower[j];
-            let (pivot, known) = match entries.split_last() {
-                Some((pivot, known)) => (*pivot, known),
-                None => return false,
-            };
-            let from = (*start).max(first);
-            let dot: f64 = (from..j).map(|k| known[k - start] * y[k - first]).sum();
-            y.push((products.get(&j).copied().unwrap_or(0.0) - dot) / pivot);
+        true
+    }
+
+    /// Takes the last row back, given its columns.
+    fn pop(&mut self, (row, columns): (&Row, Vec<usize>)) {
+        for column in columns {
+            self.columns[column].pop();
+        }
+        for (unknown, _) in row {
+            if let Some(users) = self.users.get_mut(unknown) {
+                users.pop();
+            }
+        }
+        self.columns.pop();
+        self.pivots.pop();
+        self.sums.pop();
+        self.met.pop();
+    }
+
+    /// Adds a row if its pivot reaches a least one: its columns then.
+    fn push_row(&mut self, row: &Row, least: f64) -> Option<Vec<usize>> {
+        let length = square(row).sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        let row: Row = row
+            .iter()
+            .map(|&(unknown, v)| (unknown, v / length))
+            .collect();
+        let i = self.len();
+        self.attempts += 1;
+        let mut products: BTreeMap<usize, f64> = BTreeMap::new();
+        for &(unknown, value) in &row {
+            for &(j, other) in self.users.get(&unknown).into_iter().flatten() {
+                *products.entry(j).or_default() += value * other;
+            }
+        }
+        // What these columns act on, too (Liu, SIAM J. Matrix Anal. Appl. 11 (1990) 134).
+        let mut columns = Vec::new();
+        for &j in products.keys() {
+            let mut next = Some(j);
+            while let Some(k) = next.filter(|&k| self.met[k] < self.attempts) {
+                self.met[k] = self.attempts;
+                columns.push(k);
+                next = self.columns[k].first().map(|below| below.0);
+            }
+        }
+        columns.sort_unstable();
+        // L y = s.
+        let mut y = Vec::with_capacity(columns.len());
+        for &j in &columns {
+            let product = products.get(&j).copied().unwrap_or(0.0);
+            let own = (product - std::mem::take(&mut self.sums[j])) / self.pivots[j];
+            self.columns[j]
+                .iter()
+                .for_each(|&(k, l)| self.sums[k] += l * own);
+            y.push(own);
         }
         let square = 1.0 - y.iter().map(|v| v * v).sum::<f64>();
         if square < least {
-            return false;
+            return None;
         }
-        y.push(square.sqrt());
-        for (unknown, _) in &row {
-            self.users.entry(*unknown).or_default().push(i);
+        for (&j, own) in columns.iter().zip(y) {
+            self.columns[j].push((i, own));
         }
-        self.lower.push((first, y));
-        self.rows.push(row);
-        true
+        for (unknown, value) in row {
+            self.users.entry(unknown).or_default().push((i, value));
+        }
+        self.pivots.push(square.sqrt());
+        self.columns.push(Vec::new());
+        self.sums.push(0.0);
+        self.met.push(0);
+        Some(columns)
     }
 }
 
@@ -237,6 +273,41 @@ pub fn hairs(surface: &ContactSurface, arms: &[std::ops::Range<usize>], least: f
         .collect()
 }
 
+/// Points that others may be merged into.
+struct Others<'a> {
+    surface: &'a ContactSurface,
+    numbers: Vec<usize>,
+    /// They by place.
+    places: Boxes,
+}
+
+impl<'a> Others<'a> {
+    fn new(
+        surface: &'a ContactSurface,
+        points: impl Iterator<Item = usize>,
+        stays: &[bool],
+    ) -> Self {
+        let numbers: Vec<usize> = points.filter(|&k| stays[k]).collect();
+        let places = Boxes::new(numbers.iter().map(|&k| [surface.points[k].x; 2]));
+        Others {
+            surface,
+            numbers,
+            places,
+        }
+    }
+
+    /// The one nearest to a point, of equals the first.
+    fn nearest(&self, point: usize) -> Option<usize> {
+        let place = |k: usize| &self.surface.points[k].x;
+        let away = |other: usize| norm(&sub(place(point), place(self.numbers[other])));
+        let nothing = (f64::INFINITY, usize::MAX);
+        let nearest = self
+            .places
+            .least(|own| no_nearer(place(point), own), away, nothing);
+        self.numbers.get(nearest.1).copied()
+    }
+}
+
 /// Merges points into the nearest others of their arms, or of any arm if `anywhere`; what has no other stays. The arms, and how
 /// many points went.
 pub fn merge(
@@ -247,16 +318,17 @@ pub fn merge(
 ) -> (Vec<std::ops::Range<usize>>, usize) {
     let count = surface.points.len();
     let mut target: Vec<usize> = (0..count).collect();
-    let away = |a: usize, b: usize| norm(&sub(&surface.points[a].x, &surface.points[b].x));
-    let nearest = |k: usize, among: &mut dyn Iterator<Item = usize>| {
-        let others = among.filter(|m| !lost.contains(m));
-        others.min_by(|&a, &b| away(k, a).total_cmp(&away(k, b)))
-    };
-    for arm in arms {
-        for k in arm.clone().filter(|k| lost.contains(k)) {
-            let all = || arms.iter().flat_map(Clone::clone).filter(|_| anywhere);
-            let own = nearest(k, &mut arm.clone());
-            target[k] = own.or_else(|| nearest(k, &mut all())).unwrap_or(k);
+    let mut stays = vec![true; count];
+    lost.iter().for_each(|&k| stays[k] = false);
+    let own = arms
+        .iter()
+        .filter(|arm| !stays[(*arm).clone()].iter().all(|s| *s));
+    let all = anywhere.then(|| Others::new(surface, arms.iter().flat_map(Clone::clone), &stays));
+    for arm in own {
+        let beside = Others::new(surface, arm.clone(), &stays);
+        for k in arm.clone().filter(|&k| !stays[k]) {
+            let nearest = beside.nearest(k).or_else(|| all.as_ref()?.nearest(k));
+            target[k] = nearest.unwrap_or(k);
         }
     }
     let kept: Vec<usize> = (0..count).filter(|&k| target[k] == k).collect();

@@ -69,10 +69,13 @@ pub(super) fn faces(
             break;
         }
     }
-    for number in 0..spaces.len() {
-        if !surface.points.iter().any(|p| p.crack == number) {
-            return Err(EnrichmentError::TooShort(number).into());
-        }
+    let mut found = vec![false; spaces.len()];
+    surface
+        .points
+        .iter()
+        .for_each(|point| found[point.crack] = true);
+    if let Some(number) = found.iter().position(|found| !found) {
+        return Err(EnrichmentError::TooShort(number).into());
     }
     Ok(surface)
 }

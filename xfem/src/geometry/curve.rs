@@ -8,14 +8,16 @@
 //! A chain is continued by its end segments, an arc by its circle.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-use super::{Point, add_scaled, dot, norm, sub, unit};
+use super::chain::Chain;
+use super::{Point, norm, sub};
 
 /// A plane curve.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Curve {
-    /// Straight segments through these points, at least two [m].
-    Chain(Vec<Point>),
+    /// Straight segments.
+    Chain(Arc<Chain>),
     /// Part of a circle from angle `from` to `to` [rad]; counter-clockwise if `to` is larger.
     Arc {
         /// Centre [m].
@@ -48,7 +50,8 @@ pub fn turned(a: &Point) -> Point {
 impl Curve {
     /// Straight segments through points of the plane.
     pub fn chain(points: &[[f64; 2]]) -> Self {
-        Curve::Chain(points.iter().map(|p| [p[0], p[1], 0.0]).collect())
+        let points = points.iter().map(|p| [p[0], p[1], 0.0]);
+        Curve::Chain(Arc::new(Chain::new(points.collect())))
     }
 
     /// Part of a circle of the plane.
@@ -70,7 +73,7 @@ impl Curve {
     /// Length L [m].
     pub fn length(&self) -> f64 {
         match self {
-            Curve::Chain(points) => points.windows(2).map(|w| norm(&sub(&w[1], &w[0]))).sum(),
+            Curve::Chain(chain) => chain.length(),
             Curve::Arc {
                 radius, from, to, ..
             } => radius * (to - from).abs(),
@@ -88,7 +91,7 @@ impl Curve {
     /// The nearest point of the curve or its continuation.
     pub fn nearest(&self, x: &Point) -> Nearest {
         match self {
-            Curve::Chain(points) => nearest_of_chain(points, x),
+            Curve::Chain(chain) => chain.nearest(x),
             Curve::Arc {
                 centre,
                 radius,
@@ -118,19 +121,7 @@ impl Curve {
     /// Point and unit tangent at an abscissa, also on the continuation; at a kink the tangent of the segment that ends.
     pub fn at(&self, s: f64) -> (Point, Point) {
         match self {
-            Curve::Chain(points) => {
-                let mut start = 0.0;
-                let last = points.len() - 2;
-                for (i, w) in points.windows(2).enumerate() {
-                    let d = sub(&w[1], &w[0]);
-                    let length = norm(&d);
-                    if s <= start + length || i == last {
-                        return (add_scaled(&w[0], (s - start) / length, &d), unit(&d));
-                    }
-                    start += length;
-                }
-                (points[0], [1.0, 0.0, 0.0])
-            }
+            Curve::Chain(chain) => chain.at(s),
             Curve::Arc {
                 centre,
                 radius,
@@ -148,57 +139,9 @@ impl Curve {
     }
 }
 
-fn nearest_of_chain(points: &[Point], x: &Point) -> Nearest {
-    let last = points.len() - 2;
-    let mut best: Option<(f64, Nearest)> = None;
-    let mut start = 0.0;
-    for (i, w) in points.windows(2).enumerate() {
-        let d = sub(&w[1], &w[0]);
-        let length = norm(&d);
-        let tangent = unit(&d);
-        let from = sub(x, &w[0]);
-        let along = dot(&from, &tangent);
-        let low = if i == 0 { f64::NEG_INFINITY } else { 0.0 };
-        let high = if i == last { f64::INFINITY } else { length };
-        let foot = along.clamp(low, high);
-        let phi = dot(&from, &turned(&tangent));
-        let (distance, signed) = if foot == along {
-            (phi.abs(), phi)
-        } else {
-            // Nearest to a kink: the side of the mean normal there.
-            let (kink, other) = if foot == high {
-                (w[1], i + 1)
-            } else {
-                (w[0], i - 1)
-            };
-            let neighbour = unit(&sub(&points[other + 1], &points[other]));
-            let mean = turned(&add_scaled(&tangent, 1.0, &neighbour));
-            let gap = sub(x, &kink);
-            (norm(&gap), norm(&gap).copysign(dot(&gap, &mean)))
-        };
-        if best.is_none_or(|(least, _)| distance < least) {
-            let nearest = Nearest {
-                s: start + foot,
-                phi: signed,
-                tangent,
-            };
-            best = Some((distance, nearest));
-        }
-        start += length;
-    }
-    // A chain has at least one segment.
-    best.map_or(
-        Nearest {
-            s: f64::NAN,
-            phi: f64::NAN,
-            tangent: [1.0, 0.0, 0.0],
-        },
-        |(_, nearest)| nearest,
-    )
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::add_scaled;
     use super::*;
 
     fn arc(from: f64, to: f64) -> Curve {
@@ -212,12 +155,7 @@ mod tests {
 
     #[test]
     fn points_beside_a_curve_are_found_again() {
-        let chain = Curve::Chain(vec![
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.5, 0.8, 0.0],
-            [3.0, 0.9, 0.0],
-        ]);
+        let chain = Curve::chain(&[[0.0, 0.0], [1.0, 0.0], [1.5, 0.8], [3.0, 0.9]]);
         for curve in [chain, arc(-0.4, 2.0), arc(2.0, -0.4), arc(3.0, 9.0)] {
             let length = curve.length();
             for k in -5..=25 {
@@ -243,7 +181,7 @@ mod tests {
 
     #[test]
     fn a_kink_is_convex_on_one_side_and_the_sign_follows_the_mean_normal() {
-        let chain = Curve::Chain(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -1.0, 0.0]]);
+        let chain = Curve::chain(&[[0.0, 0.0], [1.0, 0.0], [1.0, -1.0]]);
         let outside = chain.nearest(&[1.3, 0.4, 0.0]);
         assert!((outside.phi - 0.5).abs() < 1e-14 && (outside.s - 1.0).abs() < 1e-14);
         let inside = chain.nearest(&[0.8, -0.3, 0.0]);

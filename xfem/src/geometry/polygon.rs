@@ -2,14 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use super::boxes::Extents;
 use super::clip::fan;
+use super::ears::ears;
 use super::{Point, add_scaled, cross, dot, norm, sub};
 
 /// Corners in counter-clockwise order.
 pub type Polygon = Vec<Point>;
 
 /// Twice the signed area of a triangle.
-fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
+pub(super) fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
     cross(&sub(b, a), &sub(c, a))[2]
 }
 
@@ -112,6 +114,24 @@ pub fn meets(polygon: &[Point], [p, q]: [&Point; 2], slack: f64, least: f64) -> 
     (to - from) * norm(&sub(q, p)) > least
 }
 
+/// Whether all places in a box lie to the right of the line a b by so much that none of them rounds to its left.
+pub fn right_of([a, b]: [&Point; 2], [low, high]: &Extents) -> bool {
+    let d = sub(b, a);
+    let size = |v: &Point| v[0].abs() + v[1].abs();
+    let level = |x: f64, y: f64| {
+        let from = sub(&[x, y, 0.0], a);
+        let rounding = 8.0 * f64::EPSILON * size(&d) * size(&from);
+        cross(&d, &from)[2] + rounding
+    };
+    let corners = [
+        (low[0], low[1]),
+        (high[0], low[1]),
+        (low[0], high[1]),
+        (high[0], high[1]),
+    ];
+    corners.into_iter().all(|(x, y)| level(x, y) < 0.0)
+}
+
 /// True inside (crossing number); on the outline either.
 pub fn contains(polygon: &[Point], x: &Point) -> bool {
     let mut inside = false;
@@ -186,46 +206,10 @@ pub fn is_convex(polygon: &[Point]) -> bool {
 
 /// Triangles that fill a polygon: a fan of a convex one, ears of another.
 pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
-    let count = polygon.len();
     if is_convex(polygon) {
         return fan(polygon);
     }
-    let mut rest = polygon.to_vec();
-    let mut found = Vec::with_capacity(count.saturating_sub(2));
-    while rest.len() > 3 {
-        let n = rest.len();
-        let ear = |i: usize| {
-            let (a, b, c) = (rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]);
-            let size = doubled_area(&a, &b, &c);
-            let free = (0..n)
-                .filter(|&k| rest[k] != a && rest[k] != b && rest[k] != c)
-                .all(|k| {
-                    let x = &rest[k];
-                    doubled_area(&a, &b, x) < 0.0
-                        || doubled_area(&b, &c, x) < 0.0
-                        || doubled_area(&c, &a, x) < 0.0
-                });
-            (size > 0.0 && free).then(|| {
-                // The ear with the best shape: area over squared perimeter.
-                let perimeter = norm(&sub(&b, &a)) + norm(&sub(&c, &b)) + norm(&sub(&a, &c));
-                size / (perimeter * perimeter)
-            })
-        };
-        let best = (0..n)
-            .filter_map(|i| Some((i, ear(i)?)))
-            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-        let i = match best {
-            Some((i, _)) => i,
-            // Only corners in line are left: they enclose nothing.
-            None => break,
-        };
-        found.push([rest[(i + n - 1) % n], rest[i], rest[(i + 1) % n]]);
-        rest.remove(i);
-    }
-    if let &[a, b, c] = rest.as_slice() {
-        found.push([a, b, c]);
-    }
-    found
+    ears(polygon)
 }
 
 #[cfg(test)]
