@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::cut::crack::{Crack, Geometry};
-use crate::cut::part::Place;
+use crate::cut::part::{FaceCorner, Place};
+use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::clip::{bent_crossing, clip_with, snapped};
 use crate::geometry::polygon::space_area;
 use crate::geometry::{Point, add_scaled, norm, sub};
@@ -93,44 +94,45 @@ impl CrackFacets {
             let map = mesh.map(cell);
             // A part that is cut off or merged by it is missing from the crack, and so from the forces on it.
             let tolerance = 1e-12 * norm(&sub(&map[0], &map[2]));
-            // Corners inside the cell that its own faces share.
-            let mut inner: Vec<usize> = Vec::new();
-            for face in partition.faces.iter().filter(|f| f.crack == index) {
-                let polygon: Vec<Corner> = face
-                    .corners
-                    .iter()
-                    .map(|&(x, on)| Corner {
-                        x,
-                        nodes: on.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]),
-                        sides: face.sides,
-                    })
-                    .collect();
-                let Some((polygon, front)) = within(crack, &polygon, tolerance) else {
-                    continue;
+            let own = partition.faces.iter().filter(|f| f.crack == index);
+            let pieces = own.filter_map(|face| {
+                let corner = |&(x, on): &FaceCorner| Corner {
+                    x,
+                    nodes: on.map(|[i, j]| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]),
+                    sides: face.sides,
                 };
-                let corners = polygon
-                    .into_iter()
-                    .map(|corner| {
-                        let fresh = found.corners.len();
-                        let known = match corner.nodes {
-                            Some(nodes) => {
-                                *by_edge.entry((nodes, place(&corner.x))).or_insert(fresh)
-                            }
-                            None => inner
-                                .iter()
-                                .copied()
-                                .find(|&i| norm(&sub(&found.corners[i].x, &corner.x)) <= tolerance)
-                                .unwrap_or(fresh),
-                        };
-                        if known == fresh {
-                            found.corners.push(corner);
-                            if corner.nodes.is_none() {
-                                inner.push(fresh);
-                            }
+                let polygon: Vec<Corner> = face.corners.iter().map(corner).collect();
+                Some((face, within(crack, &polygon, tolerance)?))
+            });
+            let pieces: Vec<_> = pieces.collect();
+            // Corners inside the cell that its own faces share: the first of those in one place stands for all.
+            let all = || pieces.iter().flat_map(|(_, (polygon, _))| polygon);
+            let inside = || all().filter(|corner| corner.nodes.is_none());
+            let places: Vec<Point> = inside().map(|corner| corner.x).collect();
+            let near = Boxes::new(places.iter().map(|x| [*x; 2]));
+            let mut inner: Vec<Option<usize>> = Vec::with_capacity(places.len());
+            for (face, (polygon, front)) in pieces {
+                let mut corners = Vec::with_capacity(polygon.len());
+                for corner in polygon {
+                    let fresh = found.corners.len();
+                    let known = match corner.nodes {
+                        Some(nodes) => *by_edge.entry((nodes, place(&corner.x))).or_insert(fresh),
+                        None => {
+                            let here = near.meeting(&around([&corner.x], tolerance)).into_iter();
+                            let mut firsts = here.filter_map(|k| *inner.get(k)?);
+                            let same = |&i: &usize| {
+                                norm(&sub(&found.corners[i].x, &corner.x)) <= tolerance
+                            };
+                            let first = firsts.find(same);
+                            inner.push(first.is_none().then_some(fresh));
+                            first.unwrap_or(fresh)
                         }
-                        known
-                    })
-                    .collect();
+                    };
+                    if known == fresh {
+                        found.corners.push(corner);
+                    }
+                    corners.push(known);
+                }
                 found.facets.push(Facet {
                     corners,
                     sides: face.sides,

@@ -24,10 +24,11 @@ use crate::cut::placement::{self, front_frame};
 use crate::cut::regions;
 use crate::geometry::boxes::Boxes;
 use crate::geometry::curve::turned;
+use crate::geometry::segments::Segments;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::mesh::neighbours::Neighbours;
-use crate::mesh::{Lengths, Mesh};
+use crate::mesh::{Facet, Lengths, Mesh};
 
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
@@ -83,6 +84,10 @@ impl Tips {
         arms: &[Crack],
         arrangement: &Arrangement,
     ) -> Result<Self, EnrichmentError> {
+        let ends = |&facet: &Facet| {
+            let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+            [0, 1].map(|i| mesh.nodes[nodes[i]])
+        };
         let mut search = Search {
             mesh,
             lengths,
@@ -98,6 +103,11 @@ impl Tips {
             partitions: BTreeMap::new(),
             parted: BTreeSet::new(),
             extents: Boxes::new(arms.iter().map(Crack::extents)),
+            paths: (arms.iter())
+                .map(|arm| Segments::path(arm.path.iter().map(|v| v.x)))
+                .collect(),
+            border: Segments::new(mesh.sides.values().flatten().map(ends).collect()),
+            tips_by_place: Boxes::new(trace.tips.iter().map(|tip| [tip.x; 2])),
             tips_of: vec![Vec::new(); arms.len()],
             chains_of: vec![Vec::new(); arms.len()],
         };
@@ -259,8 +269,12 @@ struct Search<'a> {
     kept: Vec<bool>,
     /// Arms with functions of both ends.
     pairs: BTreeSet<usize>,
-    /// By arm: a box around it, its tips, its chains with their cells.
+    /// The border of the body, and the tips by place.
+    border: Segments,
+    tips_by_place: Boxes,
+    /// By arm: a box around it, its path, its tips, its chains with their cells.
     extents: Boxes,
+    paths: Vec<Segments>,
     tips_of: Vec<Vec<usize>>,
     chains_of: Vec<Vec<(usize, &'a Chain)>>,
     partitions: BTreeMap<usize, Partition>,

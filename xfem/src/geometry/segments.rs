@@ -31,10 +31,14 @@ impl Segments {
         self.boxes.least(bound, away, (most, usize::MAX)).0
     }
 
-    /// Whether one comes deeper than `slack`, 0 or more, into a convex counter-clockwise polygon [m]; see [`meets`].
-    pub fn enter(&self, polygon: &[Point], slack: f64) -> bool {
-        let outside = |extents: &Extents| edges(polygon).any(|(p, q)| right_of([&p, &q], extents));
-        let enters = |k: usize| meets(polygon, &self.ends[k][0], &self.ends[k][1], slack);
+    /// Whether one has a longer part than `least` in a convex counter-clockwise polygon, or no farther than `slack` from it [m]; see
+    /// [`meets`].
+    pub fn enter(&self, polygon: &[Point], slack: f64, least: f64) -> bool {
+        let outside = |extents: &Extents| {
+            let grown = around(extents, slack);
+            edges(polygon).any(|(p, q)| right_of([&p, &q], &grown))
+        };
+        let enters = |k: usize| meets(polygon, self.ends[k].each_ref(), slack, least);
         self.boxes.any(|extents| !outside(extents), enters)
     }
 }
@@ -66,8 +70,8 @@ mod tests {
                 corner(0.3, 0.3),
                 corner(0.0, 0.3),
             ];
-            let enters = all().any(|w| meets(&square, &w[0], &w[1], 1e-12));
-            assert_eq!(segments.enter(&square, 1e-12), enters);
+            let enters = all().any(|w| meets(&square, [&w[0], &w[1]], 1e-12, 1e-6));
+            assert_eq!(segments.enter(&square, 1e-12, 1e-6), enters);
             entered += usize::from(enters);
         }
         assert!((20..380).contains(&entered));

@@ -26,6 +26,7 @@ use std::f64::consts::TAU;
 
 use crate::cut::arrangement::{BEND, On, TracedTip};
 use crate::cut::crack::{End, Geometry, Tip};
+use crate::geometry::boxes::around;
 use crate::geometry::curve::{Curve, turned};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, dot, norm, sub, unit};
@@ -165,8 +166,10 @@ impl Search<'_> {
         if let [one, two] = arms.as_slice()
             && self.goes_on(one.frame.crack, two.frame.crack)
         {
+            let beside = self.tips_by_place.meeting(&around([x], size)).into_iter();
+            let beside = beside.map(|number| &self.arrangement.tips[number]);
             let near = |tip: &&TracedTip| self.carries(tip.arm) && norm(&sub(&tip.x, x)) <= size;
-            others.extend(self.arrangement.tips.iter().filter(near).map(|tip| tip.arm));
+            others.extend(beside.filter(near).map(|tip| tip.arm));
             if others.is_empty() {
                 return None;
             }
@@ -275,7 +278,8 @@ impl Search<'_> {
             let place = &self.mesh.nodes[node as usize];
             let own = angle(&sub(place, &x));
             let wedge = angles.iter().filter(|a| **a <= own).count() % arms.len();
-            let depth = self.away_from(place, arms.iter().map(|arm| arm.frame.crack));
+            let arms = arms.iter().map(|arm| arm.frame.crack);
+            let depth = self.away_from(place, arms, f64::INFINITY);
             if depth > found[wedge].0 {
                 found[wedge] = (depth, Some(node));
             }

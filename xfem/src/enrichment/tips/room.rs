@@ -8,7 +8,7 @@ use crate::cut::part::Place;
 use crate::cut::partition::Partition;
 use crate::geometry::Point;
 use crate::geometry::boxes::around;
-use crate::geometry::polygon::{self, segment_distance};
+use crate::geometry::segments::Segments;
 use crate::geometry::tip_frame::FrontShape;
 
 use super::super::zone::Zone;
@@ -36,14 +36,12 @@ impl Search<'_> {
     ) -> bool {
         let (size, _) = self.lengths.extent;
         let line = (end.frame).behind(end.room, size, 0.1 * self.lengths.smallest);
+        let line = Segments::new(line);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
             let slack = GRAZING * map.diagonal();
-            let enters = |outline: &[Point]| {
-                let mut line = line.iter();
-                line.any(|[p, q]| polygon::meets(outline, [p, q], slack, LONGER * map.diagonal()))
-            };
+            let enters = |outline: &[Point]| line.enter(outline, slack, LONGER * map.diagonal());
             let whole = cut_off.range((cell, 0)..(cell + 1, 0)).next().is_none();
             match self.partitions.get(&cell) {
                 Some(partition) if !whole => {
@@ -155,20 +153,13 @@ impl Search<'_> {
 
     /// Distance of a place from arms other than its own and from the border of the body, at most `room` [m].
     pub(super) fn clearance(&self, x: &Point, own: &[usize], room: f64) -> f64 {
-        let mesh = self.mesh;
-        let facets = mesh.sides.values().flatten().map(|&facet| {
-            let ends: Vec<usize> = mesh.facet_nodes(facet).collect();
-            segment_distance(x, &mesh.nodes[ends[0]], &mesh.nodes[ends[1]])
-        });
         let others = self.extents.meeting(&around([x], room)).into_iter();
         let others = others.filter(|arm| !own.contains(arm));
-        facets.fold(room.min(self.away_from(x, others)), f64::min)
+        self.border.distance(x, self.away_from(x, others, room))
     }
 
-    /// Distance of a place from some arms [m].
-    pub(super) fn away_from(&self, x: &Point, arms: impl Iterator<Item = usize>) -> f64 {
-        let path = arms.flat_map(|arm| self.arms[arm].path.windows(2));
-        let away = path.map(|w| segment_distance(x, &w[0].x, &w[1].x));
-        away.fold(f64::INFINITY, f64::min)
+    /// Distance of a place from some arms, at most `most` [m].
+    pub(super) fn away_from(&self, x: &Point, arms: impl Iterator<Item = usize>, most: f64) -> f64 {
+        arms.fold(most, |most, arm| self.paths[arm].distance(x, most))
     }
 }
