@@ -72,8 +72,8 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
             let supports = support_extents(&case, &body);
             lines.extend(supports.iter().map(support_line));
             lines.iter().for_each(|line| say(format_args!("{line}")));
-            let of = |crack: usize| body.points.iter().filter(|own| own.crack == crack).count();
-            let points: Vec<usize> = (0..case.cracks.len()).map(of).collect();
+            let mut points = vec![0; case.cracks.len()];
+            body.points.iter().for_each(|own| points[own.crack] += 1);
             advice::on_case(&case, &points);
         }
     }

@@ -33,6 +33,10 @@ use self::tips::Tips;
 use self::tips::corners::Corner;
 pub use self::zone::Zone;
 
+/// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
+/// by 2 √r there, and a force that has to act through a jump this small grows like r^−½ without meaning anything.
+pub const AT_TIP: f64 = 1e-3;
+
 /// All functions of the body and of every cell.
 #[derive(Debug, Clone)]
 pub struct Enrichment {
@@ -46,8 +50,12 @@ pub struct Enrichment {
     pub zones: Vec<Zone>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
+    /// Boxes around all that may be at a tip or front other than a corner, with room for rounding, and its number.
+    at_tips: (Boxes, Vec<usize>),
     /// 2D: where arms with branch functions bend or meet.
-    pub corners: Vec<Corner>,
+    corners: Vec<Corner>,
+    /// By arm: those where it is long enough for multipliers of its own.
+    corners_of: BTreeMap<usize, Vec<usize>>,
     /// Where branch functions are singular in 2D, and the same by place.
     singular: (Vec<Point>, Boxes),
     /// Divided cells.
@@ -138,8 +146,24 @@ impl Enrichment {
         // The arms of a corner follow each other.
         singular.dedup();
         let at_place = Boxes::new(singular.iter().map(|x| [*x; 2]));
+        let largest = lengths.of_nodes.iter().copied().fold(0.0, f64::max);
+        // At a corner other functions jump, too.
+        let own = |&tip: &usize| tips.frames[tip].shape != FrontShape::Corner;
+        let ends: Vec<usize> = (0..tips.frames.len()).filter(own).collect();
+        let around = ends
+            .iter()
+            .map(|&tip| tips.frames[tip].extents(2.0 * AT_TIP * largest));
+        let at_tips = (Boxes::new(around), ends);
+        let mut corners_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (number, corner) in tips.corners.iter().enumerate() {
+            let arms: BTreeSet<usize> = corner.long.iter().copied().collect();
+            arms.into_iter()
+                .for_each(|arm| corners_of.entry(arm).or_default().push(number));
+        }
         let mut enrichment = Enrichment {
             node_ptr,
+            at_tips,
+            corners_of,
             functions,
             shifts,
             singular: (singular, at_place),
@@ -332,6 +356,19 @@ impl Enrichment {
         let (points, boxes) = &self.singular;
         let near = boxes.meeting(&around(corners, distance));
         near.into_iter().map(|k| points[k]).collect()
+    }
+
+    /// Corners at which an arm is long enough for multipliers of its own.
+    pub fn corners_of(&self, arm: usize) -> impl Iterator<Item = &Corner> {
+        let own = self.corners_of.get(&arm).into_iter().flatten();
+        own.map(|&corner| &self.corners[corner])
+    }
+
+    /// Whether a place is at a tip or front, see [`AT_TIP`]; `size`: the shortest edge there [m].
+    pub fn is_at_tip(&self, x: &Point, size: f64) -> bool {
+        let (boxes, tips) = &self.at_tips;
+        let mut near = boxes.meeting(&[*x; 2]).into_iter();
+        near.any(|k| self.tips[tips[k]].distance(x) <= AT_TIP * size)
     }
 
     /// Local nodes of a cell in the ramp of a tip, one bit each.

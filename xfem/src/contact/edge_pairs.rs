@@ -6,13 +6,14 @@
 //!
 //! P is a point force. Off the grid lines the pairs miss the patch test; the integrated spaces do not.
 
+use crate::enrichment::AT_TIP;
 use crate::enrichment::basis::FunctionKind;
 use crate::enrichment::facets::{Corner, CrackFacets};
 use crate::geometry::{norm, sub};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::multipliers::pair_space;
-use super::pairs::{AT_TIP, ContactPoint, ContactSurface, vertex_weights};
+use super::pairs::{ContactPoint, ContactSurface, vertex_weights};
 use super::surface_rule::surface_points;
 
 /// Contact surface of the `index`-th crack. `held` tells the prescribed unknowns: a pair whose normal jump is prescribed

@@ -4,14 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::PathVertex;
 use crate::cut::part::Place;
-use crate::enrichment::Enrichment;
 use crate::enrichment::basis::{ABSENT, FunctionKind};
 use crate::enrichment::facets::{Corner, CrackFacets, Facet};
-use crate::geometry::tip_frame::FrontShape;
 use crate::geometry::{Point, norm, root, sub};
 use crate::stiffness::cell_matrix::CellIntegrator;
-
-use super::pairs::AT_TIP;
 
 /// Displacement at a crossed mesh edge or node.
 #[derive(Debug, Clone, Copy)]
@@ -128,15 +124,12 @@ impl<'a> FreeJumps<'a> {
     /// Role of every corner; `None` where no multiplier can live: inside cells, at tips, where all is held.
     pub fn crossings(&self) -> Vec<Option<Crossing>> {
         let mesh = self.integrator.mesh;
-        let Enrichment { tips, lengths, .. } = self.integrator.enrichment;
-        // At a corner other functions jump, too.
-        let tips = || tips.iter().filter(|tip| tip.shape != FrontShape::Corner);
+        let enrichment = self.integrator.enrichment;
+        let sizes = &enrichment.lengths.of_nodes;
         let mut numbers: BTreeMap<(u32, [usize; 2]), u32> = BTreeMap::new();
         let mut crossing = |corner: &Corner| {
             let [i, j] = corner.nodes?;
-            let size = lengths.of_nodes[i as usize].min(lengths.of_nodes[j as usize]);
-            let mut distances = tips().map(|tip| tip.distance(&corner.x));
-            if distances.any(|distance| distance <= AT_TIP * size) {
+            if enrichment.is_at_tip(&corner.x, sizes[i as usize].min(sizes[j as usize])) {
                 return None;
             }
             let mut free = |node: u32| {
@@ -161,8 +154,7 @@ impl<'a> FreeJumps<'a> {
     pub fn part_at_corners(&mut self) -> Vec<(Point, f64)> {
         /// That distance, in edges of the mesh: answers are alike from 0.05 to 0.15, at 0.3 the faces overlap.
         const SECOND: f64 = 0.1;
-        let corners = self.integrator.enrichment.corners.iter();
-        let own = corners.filter(|corner| corner.long.contains(&self.index));
+        let own = self.integrator.enrichment.corners_of(self.index);
         let own: Vec<(Point, f64)> = own.map(|c| (c.x, SECOND * c.size)).collect();
         own.iter().for_each(|(x, d)| self.facets.part(x, *d));
         own

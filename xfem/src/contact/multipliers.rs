@@ -147,27 +147,39 @@ fn near_end(free: &FreeJumps<'_>, ends: &[(Point, f64)], corner: usize) -> Optio
 fn complete(free: &FreeJumps<'_>, mut multipliers: Multipliers) -> Multipliers {
     let facets = &free.facets.facets;
     let bare = |shares: &[Shares]| shares.iter().any(Vec::is_empty);
-    let mut of_corner: BTreeMap<usize, u32> = BTreeMap::new();
-    loop {
-        let mut grown = false;
-        for (facet, shares) in facets.iter().zip(&mut multipliers.shares) {
-            let known = facet.corners.iter().find_map(|c| of_corner.get(c)).copied();
-            if let Some(k) = known.filter(|_| bare(shares)) {
-                shares.iter_mut().for_each(|own| *own = vec![(k, 1.0)]);
-                of_corner.extend(facet.corners.iter().map(|&c| (c, k)));
-                grown = true;
-            }
-        }
-        if grown {
+    let around = groups_of(facets.iter().map(|facet| &facet.corners));
+    for first in 0..facets.len() {
+        if !bare(&multipliers.shares[first]) || !free.jumps_on(&facets[first]) {
             continue;
         }
-        let mut rest = facets.iter().zip(&multipliers.shares);
-        let Some((facet, _)) = rest.find(|(f, shares)| bare(shares) && free.jumps_on(f)) else {
-            return multipliers;
-        };
-        of_corner.extend(facet.corners.iter().map(|&c| (c, multipliers.count as u32)));
+        let own = multipliers.count as u32;
         multipliers.count += 1;
+        let mut reached = vec![first];
+        while let Some(facet) = reached.pop() {
+            let shares = &mut multipliers.shares[facet];
+            if bare(shares) {
+                shares.iter_mut().for_each(|all| *all = vec![(own, 1.0)]);
+                reached.extend(
+                    facets[facet]
+                        .corners
+                        .iter()
+                        .flat_map(|corner| &around[corner]),
+                );
+            }
+        }
     }
+    multipliers
+}
+
+/// By item: the groups that hold it, ascending.
+fn groups_of<'a>(groups: impl Iterator<Item = &'a Vec<usize>>) -> BTreeMap<usize, Vec<usize>> {
+    let mut found: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (group, items) in groups.enumerate() {
+        items
+            .iter()
+            .for_each(|&item| found.entry(item).or_default().push(group));
+    }
+    found
 }
 
 /// Extends the shares of some corners to all of them.
@@ -187,23 +199,28 @@ fn by_corner(facets: &CrackFacets, mut own: Vec<Option<Shares>>, count: usize) -
 
 /// Gives every item without shares the mean of its neighbours, ring by ring; items of one group are neighbours.
 fn extend(own: &mut [Option<Shares>], groups: &[Vec<usize>]) {
-    loop {
-        let mut found: BTreeMap<usize, Vec<&Shares>> = BTreeMap::new();
-        for group in groups {
-            let known: Vec<&Shares> = group.iter().filter_map(|&i| own[i].as_ref()).collect();
-            for &item in group.iter().filter(|&&i| own[i].is_none()) {
-                found.entry(item).or_default().extend(&known);
-            }
-        }
-        let means: Vec<(usize, Shares)> = found
+    let around = groups_of(groups.iter());
+    let beside = |item: usize| {
+        around
+            .get(&item)
             .into_iter()
-            .filter(|(_, known)| !known.is_empty())
-            .map(|(item, known)| (item, mean(&known)))
-            .collect();
-        if means.is_empty() {
-            return;
-        }
-        for (item, shares) in means {
+            .flatten()
+            .flat_map(|&g| &groups[g])
+    };
+    let mut ring: Vec<usize> = (0..own.len()).filter(|&item| own[item].is_some()).collect();
+    while !ring.is_empty() {
+        let next = ring.iter().flat_map(|&item| beside(item));
+        let next: BTreeSet<usize> = next.copied().filter(|&item| own[item].is_none()).collect();
+        let of = |item: usize| {
+            mean(
+                &beside(item)
+                    .filter_map(|&i| own[i].as_ref())
+                    .collect::<Vec<_>>(),
+            )
+        };
+        let means: Vec<Shares> = next.iter().map(|&item| of(item)).collect();
+        ring = next.into_iter().collect();
+        for (&item, shares) in ring.iter().zip(means) {
             own[item] = Some(shares);
         }
     }

@@ -12,10 +12,6 @@ use crate::geometry::{Point, cross, mean, norm, sub};
 
 use super::surface_point::SurfacePoint;
 
-/// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
-/// by 2 √r there, and a force that has to act through a jump this small grows like r^−½ without meaning anything.
-pub const AT_TIP: f64 = 1e-3;
-
 /// A contact point.
 #[derive(Debug, Clone)]
 pub struct ContactPoint {

@@ -107,7 +107,7 @@ impl Tips {
                 .map(|arm| Segments::path(arm.path.iter().map(|v| v.x)))
                 .collect(),
             border: Segments::new(mesh.sides.values().flatten().map(ends).collect()),
-            tips_by_place: Boxes::new(trace.tips.iter().map(|tip| [tip.x; 2])),
+            tips_by_place: Boxes::new(arrangement.tips.iter().map(|tip| [tip.x; 2])),
             tips_of: vec![Vec::new(); arms.len()],
             chains_of: vec![Vec::new(); arms.len()],
         };

@@ -83,9 +83,12 @@ pub(super) fn arms(net: &mut Net<'_>, cracks: &[Crack], found: &mut Arrangement)
         let slack = on_crack(net.around.lengths.smallest, net.around.lengths.rounding);
         // Where the line bends, as it is now; chords of an arc all do.
         let bent = match &mut crack.geometry {
-            Geometry::Curve(Curve::Chain(points)) => {
+            Geometry::Curve(curve @ Curve::Chain(_)) => {
                 let bent = bends(&places, slack);
-                *points = bent.iter().map(|&k| places[k]).collect();
+                let points: Vec<[f64; 2]> = (bent.iter())
+                    .map(|&k| [places[k][0], places[k][1]])
+                    .collect();
+                *curve = Curve::chain(&points);
                 bent
             }
             _ => (0..places.len()).collect(),
