@@ -3,7 +3,7 @@
 //! ```text
 //!   1  vertices within δ of each other are one: on the node, else the edge, else at their mean
 //!   2  a segment within δ/30 of a vertex or node runs through it
-//!   3  where two segments cross there is a vertex
+//!   3  where two segments cross, and where one leaves the body, there is a vertex
 //!   4  crossings of one edge by several segments within δ/30 are one vertex on it
 //! ```
 
@@ -76,6 +76,7 @@ impl<'a> Net<'a> {
             let mut changed = self.merge();
             changed |= self.run_through();
             changed |= self.cross();
+            changed |= self.leave();
             changed |= self.share_edges();
             if !changed {
                 return;
@@ -294,6 +295,27 @@ impl<'a> Net<'a> {
             self.vertices.push(self.around.vertex(&x));
             inserts.entry((l, k)).or_default().push((t, vertex));
             inserts.entry((m, n)).or_default().push((s, vertex));
+        }
+        self.insert(inserts)
+    }
+
+    /// Adds vertices where segments leave the body; whether there were any.
+    fn leave(&mut self) -> bool {
+        let mut inserts = Inserts::new();
+        for (l, k, own) in self.segments() {
+            let [u, v] = own.map(|i| self.vertices[i]);
+            for edge in self.around.edges_near(&[u.x, v.x], 0.0) {
+                let inner = self.around.cells_with(&edge).len() > 1;
+                if inner || lies_on(u.on, edge) || lies_on(v.on, edge) {
+                    continue;
+                }
+                let [a, b] = edge.map(|node| self.around.at(node));
+                if let Some((t, x)) = crossed([&u.x, &v.x], [a, b], 0.0) {
+                    let vertex = self.vertices.len();
+                    self.vertices.push(self.around.vertex(&x));
+                    inserts.entry((l, k)).or_default().push((t, vertex));
+                }
+            }
         }
         self.insert(inserts)
     }
