@@ -1,5 +1,5 @@
-//! A folder for a call and a guardian over both: whatever becomes of this process, what the call began is ended and the
-//! folder removed.
+//! A folder for a call, a group for its processes and a guardian over both: whatever becomes of this process, what the call
+//! began is ended and the folder removed.
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Write};
@@ -7,22 +7,26 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 /// The guardian is a shell that reads its standard input to the end, which the system closes however this process ends, by
-/// SIGKILL too. It learns a group when a program started in it, and forgets it with the next line, when the group has ended:
-/// from then on the number may be another's. Trees are removed by `rm`, which no depth stops; what a program left without
-/// the rights to do so gets them.
+/// SIGKILL too. A line before says that the group has ended: from then on its number may be another's. Trees are removed by
+/// `rm`, which no depth stops; what a program left without the rights to do so gets them.
 const GUARDIAN: &str = r#"
-if read -r group; then read -r ended || kill -s KILL -- "-$group"; fi
+read -r ended || kill -s KILL -- "-$2"
 read -r end
 command -p rm -rf -- "$1" || { command -p chmod -R u+rwx -- "$1"; command -p rm -rf -- "$1"; }"#;
 
-/// A private folder under guard; dropped, it is gone.
+/// What leads the group waits to be ended with it. So the guardian knows the group before a program begins in it: one that
+/// has begun ends however soon this process does.
+const LEADER: &str = "read -r end";
+
+/// A private folder and a group of processes under guard; dropped, both are gone.
 pub struct Guarded {
     path: PathBuf,
+    leader: Child,
     guardian: Child,
 }
 
 impl Guarded {
-    /// A new folder in that for temporary files.
+    /// A new folder in that for temporary files, and a group without a program.
     ///
     /// # Errors
     /// A folder that cannot be created, or a shell that cannot be started, in words.
@@ -31,18 +35,21 @@ impl Guarded {
         // The program works in it.
         let path = std::path::absolute(path).map_err(|e| e.to_string())?;
         private(&path).map_err(|e| format!("cannot create `{}`: {e}", path.display()))?;
-        let mut shell = Command::new("/bin/sh");
-        shell.args(["-c", GUARDIAN, "guardian"]).arg(&path);
-        let shell = shell.stdin(Stdio::piped());
-        shell.stdout(Stdio::null()).stderr(Stdio::null());
-        // An interruption at the terminal reaches whole groups of processes, and this one has to outlive it.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(shell, 0);
-        match shell.spawn() {
-            Ok(guardian) => Ok(Self { path, guardian }),
+        let cannot = |error| {
+            let _still_empty = std::fs::remove_dir(&path);
+            format!("cannot start the guardian /bin/sh: {error}")
+        };
+        let mut leader = shell(LEADER).spawn().map_err(cannot)?;
+        let group = leader.id().to_string();
+        match shell(GUARDIAN).arg(&path).arg(group).spawn() {
+            Ok(guardian) => Ok(Self {
+                path,
+                leader,
+                guardian,
+            }),
             Err(error) => {
-                let _still_empty = std::fs::remove_dir(&path);
-                Err(format!("cannot start the guardian /bin/sh: {error}"))
+                let _status = leader.wait();
+                Err(cannot(error))
             }
         }
     }
@@ -52,30 +59,43 @@ impl Guarded {
         &self.path
     }
 
-    /// Puts a group of processes under guard.
-    ///
-    /// # Errors
-    /// A guardian that somebody ended.
-    pub fn watch(&mut self, group: u32) -> io::Result<()> {
-        self.tell(&format!("{group}\n"))
+    /// Has a program begin in the group.
+    #[cfg(unix)]
+    pub fn hold(&self, program: &mut Command) {
+        use std::os::unix::process::CommandExt;
+        program.process_group(self.leader.id().cast_signed());
     }
 
-    /// The group has ended.
-    pub fn release(&mut self) {
-        let _gone = self.tell("\n");
-    }
-
-    fn tell(&mut self, line: &str) -> io::Result<()> {
+    /// Ends the group, whose number is its own until its leader is waited for.
+    pub fn end(&mut self) {
+        #[cfg(unix)]
+        {
+            use rustix::process::{Pid, Signal, kill_process_group};
+            let _gone = kill_process_group(Pid::from_child(&self.leader), Signal::KILL);
+        }
         let pipe = self.guardian.stdin.as_mut();
-        pipe.map_or(Ok(()), |pipe| pipe.write_all(line.as_bytes()))
+        let _gone = pipe.map(|pipe| pipe.write_all(b"\n"));
     }
 }
 
 impl Drop for Guarded {
     fn drop(&mut self) {
-        // Its input is closed first, which is what it waits for.
+        // Their inputs are closed first, which is what they wait for.
         let _status = self.guardian.wait();
+        let _status = self.leader.wait();
     }
+}
+
+/// A shell that waits for its standard input, in a group of its own: an interruption at the terminal reaches whole groups of
+/// processes, and this one has to outlive it.
+fn shell(script: &str) -> Command {
+    let mut shell = Command::new("/bin/sh");
+    shell.args(["-c", script, "guardian"]);
+    shell.stdin(Stdio::piped());
+    shell.stdout(Stdio::null()).stderr(Stdio::null());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut shell, 0);
+    shell
 }
 
 /// Creates a folder that nobody else looks into, and that was not there.

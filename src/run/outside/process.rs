@@ -83,20 +83,15 @@ impl<'a> Running<'a> {
             .stdin(Stdio::null())
             .stdout(streams[0].try_clone()?)
             .stderr(streams[1].try_clone()?);
-        // A group of its own, so that it can be ended with all that it starts.
         #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(command, 0);
+        folder.hold(command);
         let begin = Instant::now();
-        let mut running = Self {
+        Ok(Self {
             child: command.spawn()?,
             folder,
             begin,
             streams,
-        };
-        match running.folder.watch(running.child.id()) {
-            Ok(()) => Ok(running),
-            Err(error) => running.kill().and(Err(error)),
-        }
+        })
     }
 
     /// Waits for its end, which is that of its whole group; none if time ended it.
@@ -150,15 +145,10 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Ends the group, whose number is its own until its first process is waited for.
+    /// Ends the group, and the program if it left that.
     fn kill(&mut self) -> io::Result<ExitStatus> {
-        #[cfg(unix)]
-        {
-            use rustix::process::{Pid, Signal, kill_process_group};
-            let _gone = kill_process_group(Pid::from_child(&self.child), Signal::KILL);
-        }
+        self.folder.end();
         let _ended_before = self.child.kill();
-        self.folder.release();
         self.child.wait()
     }
 }
