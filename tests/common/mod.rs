@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use stickslip::case::{self, Case};
 use stickslip::model::body::{Body, BodyError, Needs};
@@ -336,6 +337,38 @@ pub fn assert_near(found: f64, exact: f64, tolerance: f64, at: impl Debug) {
 #[track_caller]
 pub fn assert_below(found: f64, bound: f64, at: impl Debug) {
     assert!(found < bound, "{at:?}: {found:e}, not below {bound:e}");
+}
+
+/// Whether something comes to hold: ten minutes are for ever, however busy the machine.
+pub fn awaited(mut holds: impl FnMut() -> bool) -> bool {
+    let clock = Instant::now();
+    while !holds() {
+        if clock.elapsed().as_secs() > 600 {
+            return false;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    true
+}
+
+/// What a call gives that computes for less than so many seconds, which do not depend on what else the machine does.
+#[track_caller]
+pub fn quick<T>(most_s: i64, call: impl FnOnce() -> T) -> T {
+    #[cfg(unix)]
+    let computed = || rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime).tv_sec;
+    #[cfg(not(unix))]
+    let computed = || 0;
+    let begin = computed();
+    let found = call();
+    let spent = computed() - begin;
+    assert!(spent < most_s, "{spent} s");
+    found
+}
+
+/// Lines on standard error but those of progress, which come with the time.
+pub fn but_progress(complaints: &str) -> String {
+    let lines = complaints.split_inclusive('\n');
+    lines.filter(|line| !line.starts_with('[')).collect()
 }
 
 /// Runs the program in a folder: exit code, standard output, standard error.

@@ -6,7 +6,6 @@
 mod change;
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use change::{any_binary, any_text};
 use proptest::prelude::*;
@@ -25,6 +24,7 @@ use stickslip::studies::task::Looks;
 use stickslip_methods::Tier;
 
 use super::fclib::any::{any_global, any_local};
+use crate::common::quick;
 
 /// Largest number of cells of a case that is discretised here.
 const SMALL: usize = 300;
@@ -65,14 +65,8 @@ fn assert_clear(message: &str, begins: &str, lines: usize) {
     assert!(!message.contains(hidden), "commands: {message:?}");
 }
 
-/// Answer of a reader, in time: the usual inputs take milliseconds, on a busy machine with unoptimised code seconds.
-fn quick<T>(read: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
-    let found = read();
-    let elapsed = start.elapsed();
-    assert!(elapsed < Duration::from_secs(20), "hangs: {elapsed:?}");
-    found
-}
+/// Time for a reader [s]: the usual inputs take milliseconds, with unoptimised code seconds.
+const QUICK: i64 = 20;
 
 fn any_case() -> impl Strategy<Value = Vec<u8>> {
     any_text(files(&["cases", "tests/data/geometry"], "toml"))
@@ -90,7 +84,7 @@ const SWEEPS: [&str; 3] = [
 ];
 
 fn read_problem(bytes: Vec<u8>) -> Option<Problem> {
-    match quick(|| fclib::from_bytes(Path::new("fuzz.hdf5"), bytes)) {
+    match quick(QUICK, || fclib::from_bytes(Path::new("fuzz.hdf5"), bytes)) {
         Ok(problem) => Some(problem),
         Err(error) => {
             assert_clear(&error.to_string(), "`fuzz.hdf5`", 1);
@@ -107,7 +101,7 @@ proptest! {
         let dir = tempfile::tempdir().unwrap();
         let file = dir.path().join("fuzz.toml");
         std::fs::write(&file, &bytes).unwrap();
-        match quick(|| case::read(&file)) {
+        match quick(QUICK, || case::read(&file)) {
             Ok(case) => {
                 let visible = |text: &str| !text.chars().any(char::is_control);
                 prop_assert!(!case.title.is_empty() && visible(&case.title));
@@ -135,7 +129,7 @@ proptest! {
         std::fs::copy(cyclic, dir.path().join("beside.toml")).unwrap();
         let file = dir.path().join("sweep.toml");
         std::fs::write(&file, bytes).unwrap();
-        match quick(|| Plan::read(&file)) {
+        match quick(QUICK, || Plan::read(&file)) {
             Ok(plan) => prop_assert!(!plan.tasks.is_empty()),
             Err(error) => {
                 for error in error.faults() {
@@ -155,7 +149,7 @@ proptest! {
         text in any_text(["penalty:normal=1e2,tangential=1e2", "hybrid", "exec:./mine"].map(|t| t.as_bytes().to_vec()).to_vec())
     ) {
         let text = String::from_utf8_lossy(&text);
-        match quick(|| Choice::parse(&text)) {
+        match quick(QUICK, || Choice::parse(&text)) {
             Ok(choice) => {
                 let again = Choice::parse(&choice.argument()).unwrap();
                 prop_assert_eq!(again.label, choice.label);
@@ -239,15 +233,8 @@ fn a_header_that_claims_a_trillion_entries_allocates_nothing() {
 #[test]
 fn any_answer_of_a_program_is_a_verdict() {
     use proptest::test_runner::TestRunner;
-    use std::os::unix::fs::PermissionsExt;
     let dir = tempfile::tempdir().unwrap();
-    let program = dir.path().join("any");
-    std::fs::write(
-        &program,
-        "#!/bin/sh\ncat \"$0.said\"\ncp \"$0.answer\" \"$2\"\n",
-    )
-    .unwrap();
-    std::fs::set_permissions(&program, PermissionsExt::from_mode(0o755)).unwrap();
+    let program = super::outside::called(dir.path(), "any");
     let choice = Choice::parse(&format!("exec:{}", program.display())).unwrap();
     let texts = |text: &str| any_text(vec![text.as_bytes().to_vec()]);
     let answers = (
