@@ -1,23 +1,30 @@
 //! Ends of a study or a task of it: limits are verdicts, what others end is an error, an interruption leaves whole records.
 
+#![cfg(unix)]
+
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
+use super::outside::Life;
 use super::pipeline::{forty_tolerances, measured, planned, records, study};
+use crate::common::awaited;
 use stickslip::run::verdict::Verdict;
 use stickslip::studies::plan::Plan;
 use stickslip::studies::record::Record;
 
-/// 40 accuracies on a coarse plate: tasks of a few milliseconds.
-fn plate(methods: &str) -> (tempfile::TempDir, Plan) {
+/// 40 accuracies on a coarse plate: tasks of a few milliseconds; and more cells.
+fn plate(methods: &str, more: &str) -> (tempfile::TempDir, Plan) {
     planned(&format!(
         "title = \"t\"\nrepeats = {{ least = 1, most = 2, seconds = 0.0 }}\n[[cells]]\ncases = [\"plate_mesh1\"]\n\
-         friction = [0.1]\nmethods = [{methods}]\ntolerances = {}\n",
+         friction = [0.1]\nmethods = [{methods}]\ntolerances = {}\n{more}",
         forty_tolerances()
     ))
 }
+
+/// A program that waits, in the middle of them.
+const WAITS: &str = "[[cells]]\ncases = [\"plate_mesh1\"]\nfriction = [0.1]\nmethods = [\"exec:waits\"]\ntolerances = [1e-6]\n";
 
 /// Complaint of a study that ends with 2.
 #[track_caller]
@@ -28,9 +35,15 @@ fn refused(mut command: Command) -> String {
     error
 }
 
+fn kill(signal: &str, process: &str) {
+    let kill = Command::new("kill").args([signal, process]).status();
+    assert!(kill.unwrap().success());
+}
+
 fn all_solved(out: &Path, plan: &Plan) -> bool {
-    let mut all = records(out, &plan.tasks).into_values();
-    all.all(|own| own.found.verdict == Verdict::Solved)
+    let all = records(out, &plan.tasks);
+    let solved = |own: &Record| own.found.verdict == Verdict::Solved;
+    !all.is_empty() && all.values().all(solved)
 }
 
 #[test]
@@ -74,7 +87,7 @@ fn limits_of_time_and_memory_are_verdicts() {
 #[cfg(target_os = "linux")]
 #[test]
 fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
-    let (dir, plan) = plate("\"b-newton\"");
+    let (dir, plan) = plate("\"b-newton\"", "");
     // A limit below the one asked for bounds the tasks instead of it, as long as it lasts.
     let own = "sweep.toml --out out --untimed --memory-limit 8000 --shard 1/20";
     let own = study(dir.path(), own);
@@ -90,22 +103,11 @@ fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
     assert!(told.contains("the shell bounds memory"), "{told}");
     assert!(all_solved(&dir.path().join("out"), &plan));
 
+    let (dir, plan) = plate("\"b-newton\"", WAITS);
+    let mut life = Life::of(&dir.path().join("waits"));
     let mut run = study(dir.path(), "sweep.toml --out killed");
-    let mut run = run.stderr(Stdio::piped()).spawn().unwrap();
-    let tasks = format!("/proc/{}/task", run.id());
-    let children = || {
-        let tasks = fs::read_dir(&tasks).into_iter().flatten().flatten();
-        let own = tasks.map(|task| fs::read_to_string(task.path().join("children")));
-        own.flatten().find(|own| !own.is_empty())
-    };
-    let worker = loop {
-        match children() {
-            Some(own) => break own.trim().to_owned(),
-            None => assert!(run.try_wait().unwrap().is_none(), "ended first"),
-        }
-    };
-    let kill = Command::new("kill").args(["-9", &worker]).status();
-    assert!(kill.unwrap().success());
+    let run = run.stderr(Stdio::piped()).spawn().unwrap();
+    kill("-9", life.begun().trim());
     let output = run.wait_with_output().unwrap();
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{error}");
@@ -117,7 +119,7 @@ fn limits_of_the_shell_and_kills_from_outside_leave_no_record() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_that_cannot_be_written_is_an_error() {
-    let (dir, _) = plate("\"b-newton\"");
+    let (dir, _) = plate("\"b-newton\"", "");
     let error = refused(study(dir.path(), "sweep.toml --out /dev/null/x"));
     assert!(error.contains("/dev/null"), "{error}");
     let out = dir.path().join("full");
@@ -132,45 +134,42 @@ fn a_folder_that_cannot_be_written_is_an_error() {
 }
 
 /// Goal: an interruption ends the run with whole records; the next run takes it up.
-#[cfg(unix)]
 #[test]
 fn an_interrupted_study_finishes_its_task_and_says_what_is_left() {
-    let (dir, plan) = plate("\"b-newton\", \"hybrid\", \"latin\", \"nsgs\"");
+    let (dir, plan) = plate("\"b-newton\", \"hybrid\", \"latin\", \"nsgs\"", WAITS);
+    let mut life = Life::of(&dir.path().join("waits"));
     let (run, out) = ("sweep.toml --untimed --out out", dir.path().join("out"));
     let mut command = study(dir.path(), run);
-    let child = command
+    let mut child = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let clock = Instant::now();
-    while records(&out, &plan.tasks).len() < 10 {
-        assert!(clock.elapsed() < Duration::from_secs(120));
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    let kill = Command::new("kill")
-        .arg("-INT")
-        .arg(child.id().to_string())
-        .status();
-    assert!(kill.unwrap().success());
+    life.begun();
+    kill("-INT", &child.id().to_string());
+    let (mut told, mut errors) = (BufReader::new(child.stderr.take().unwrap()), String::new());
+    while !errors.contains("Interrupted") && told.read_line(&mut errors).unwrap() > 0 {}
+    fs::write(dir.path().join("waits.go"), "").unwrap();
+    told.read_to_string(&mut errors).unwrap();
     let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let [text, errors] = [output.stdout, output.stderr].map(|own| String::from_utf8(own).unwrap());
-    let kept = records(&out, &plan.tasks).len();
-    assert!((10..160).contains(&kept), "{kept}");
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    let (text, all) = (String::from_utf8(output.stdout).unwrap(), plan.tasks.len());
+    let kept = records(&out, &plan.tasks);
+    assert!(kept.values().any(|own| own.found.method == "exec:waits"));
+    let (kept, left) = (kept.len(), all - kept.len());
+    assert!((10..all - 10).contains(&kept), "{kept}");
     assert!(
-        text.contains(&format!("{kept} measured now, {} left", 160 - kept)),
+        text.contains(&format!("{kept} measured now, {left} left")),
         "{text}"
     );
     assert!(errors.contains("Interrupted"), "{errors}");
     // One line per task where nobody looks at a bar.
     assert_eq!(errors.lines().filter(|l| l.starts_with('[')).count(), kept);
-    assert_eq!(measured(dir.path(), run), 160 - kept);
+    assert_eq!(measured(dir.path(), run), left);
 }
 
 /// Goal: what is no file that a disk holds is refused at once by every verb that reads one: pipes that nobody writes into,
 /// devices without an end, folders without a problem, and a terabyte of nothing.
-#[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_refused_at_once() {
     let dir = tempfile::tempdir().unwrap();
@@ -202,13 +201,9 @@ fn what_is_no_regular_file_is_refused_at_once() {
                 .stderr(Stdio::piped())
                 .spawn()
                 .unwrap();
-            let clock = Instant::now();
-            while child.try_wait().unwrap().is_none() {
-                if clock.elapsed() > Duration::from_secs(20) {
-                    child.kill().unwrap();
-                    panic!("{verb} {file} hangs");
-                }
-                std::thread::sleep(Duration::from_millis(2));
+            if !awaited(|| child.try_wait().unwrap().is_some()) {
+                child.kill().unwrap();
+                panic!("{verb} {file} hangs");
             }
             let output = child.wait_with_output().unwrap();
             let told = String::from_utf8(output.stderr).unwrap();
