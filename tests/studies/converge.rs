@@ -1,6 +1,7 @@
 //! The convergence study: what is run, what it is measured against, what is written, and how it fails.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use crate::common::*;
 use stickslip::case::{Case, ContactSpace, Tip};
@@ -79,11 +80,12 @@ fn samples(case: &Case, study: &ConvergencePlan) -> Vec<Sample> {
 /// Goal: errors against a closed form arrive as measured, with their orders beside the theoretical ones, for every tip option.
 #[test]
 fn closed_forms_give_observed_beside_theoretical_orders() {
-    let case = plate(0.53, "none");
+    let (case, clock) = (plate(0.53, "none"), Instant::now());
     let samples = samples(
         &case,
         &study("hybrid", Some(vec![Tip::None, Tip::Branch, Tip::None])),
     );
+    let elapsed = clock.elapsed().as_secs_f64();
     // Twice the same option is once the same problem.
     assert_eq!(samples.len(), 2 * 3);
     assert!(samples.iter().all(|s| s.verdict.is_honest()));
@@ -100,7 +102,7 @@ fn closed_forms_give_observed_beside_theoretical_orders() {
         assert!(["none", "branch"].contains(&row.finest.variant.tip.as_str()));
     }
     let total = |row: &ErrorRow| row.seconds.iter().sum::<f64>();
-    assert!(errors.iter().all(|r| total(r) > 0.0 && total(r) < 60.0));
+    assert!((errors.iter().map(total)).all(|s| 1e-6 < s && s < elapsed));
 
     let bundle = stickslip::report::convergence::bundle(&errors, &orders, &Provenance::collect(1));
     let bundle = bundle.unwrap();
@@ -193,7 +195,7 @@ fn the_verb_bounds_the_reaction_of_the_plate() {
         let plate = ["converge", "plate_mesh1", "--refine", "4,1,2"];
         let arguments = [&plate[..], &["--spaces", "edge-pairs", "--out", out]].concat();
         let (shown, complaints) = ends_with(0, &arguments, dir.path());
-        assert!(complaints.is_empty());
+        assert_eq!(but_progress(&complaints), "");
         assert!(shown.contains("9 runs: 9 solved, 0 not"), "{shown}");
         assert!(shown.contains("with its error bar"), "{shown}");
         files(&dir.path().join(out))
