@@ -159,6 +159,9 @@ pub struct ProblemSize {
     /// Residual of uniform stress states on the mesh, found by its judge [-].
     #[serde(default = "nan::nothing", with = "nan")]
     pub uniform_stress: f64,
+    /// Ends of cracks that were joined with what they nearly touch.
+    #[serde(default)]
+    pub joined: usize,
     /// Whether every contact point alone has exactly one solution; absent where nobody asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unique: Option<bool>,

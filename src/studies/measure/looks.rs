@@ -157,6 +157,9 @@ impl Scene<'_> {
             points: self.system.points(),
             unknowns: self.system.rows(),
             uniform_stress: self.uniform_stress(),
+            joined: self
+                .body()
+                .map_or(0, |(_, loading)| loading.body().joined.len()),
             unique,
             operator: self.operator(),
         }
