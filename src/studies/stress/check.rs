@@ -33,6 +33,9 @@ pub struct Check {
     /// Largest relative error.
     #[serde(with = "nan")]
     pub error: f64,
+    /// That of the energy alone.
+    #[serde(with = "nan", default = "nan::nothing")]
+    pub energy: f64,
     /// A matter to be looked at, and no fault.
     pub remark: String,
 }
@@ -40,11 +43,12 @@ pub struct Check {
 /// Checks an answer; none where nothing is known of it.
 pub fn check(case: &Case, found: Found<'_>) -> Option<Check> {
     if let Some(patch) = Patch::of(case) {
-        let (faults, error) = compare(&patch, found);
+        let (faults, [error, energy]) = compare(&patch, found);
         return Some(Check {
             uniform: true,
             faults,
             error,
+            energy,
             remark: uncovered(&patch, found),
         });
     }
@@ -67,6 +71,7 @@ pub fn check(case: &Case, found: Found<'_>) -> Option<Check> {
         uniform: false,
         faults: fault.into_iter().collect(),
         error,
+        energy: error,
         remark: String::new(),
     })
 }
@@ -117,8 +122,8 @@ impl Worst {
     }
 }
 
-/// The quantity that differs from the closed form, and the largest relative error.
-fn compare(patch: &Patch, answer: Found<'_>) -> (Vec<String>, f64) {
+/// The quantity that differs from the closed form, the largest relative error, and that of the energy.
+fn compare(patch: &Patch, answer: Found<'_>) -> (Vec<String>, [f64; 2]) {
     let exact = &patch.exact;
     let mut found: Vec<(&str, Worst)> = Vec::new();
     let quantity = |name: &str| answer.quantity(name).unwrap_or(f64::NAN);
@@ -159,11 +164,12 @@ fn compare(patch: &Patch, answer: Found<'_>) -> (Vec<String>, f64) {
         },
     );
     let rounding = ROUNDING.max(exact.place());
+    let errors = [largest, found[0].1.0];
     let wrong = found
         .into_iter()
         .filter(|(_, w)| w.0.is_nan() || w.0 > rounding);
     let told = wrong.map(|(what, Worst(error, place))| format!("{what} {error:.1e} {place}"));
-    (told.collect(), largest)
+    (told.collect(), errors)
 }
 
 /// Displacement of nodes and of both faces of every crack, relative to the largest.
