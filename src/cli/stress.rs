@@ -43,7 +43,7 @@ pub struct Arguments {
     /// Scenes per family, instead of the numbers of the suite
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     scenes: Option<u64>,
-    /// 20 000 scenes
+    /// 20 000 scenes, and ladders of other tips and spaces
     #[arg(long, conflicts_with = "scenes")]
     full: bool,
     /// Only this scene of a family, in this process: its case file is written to the folder of the results
@@ -54,6 +54,9 @@ pub struct Arguments {
     /// Scenes at the same time; by default as many as there are cores
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+    /// Only ladders whose name has this in it, e.g. "past crack, slips", and all of their steps
+    #[arg(long, value_name = "TEXT", conflicts_with = "family")]
+    ladders: Option<String>,
     /// Part of the scenes, e.g. 2/8
     #[arg(long, value_parser = shard)]
     shard: Option<Shard>,
@@ -69,7 +72,10 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     if let (Some(number), Some(&family)) = (arguments.only, arguments.family.first()) {
         return one(&arguments, family, number);
     }
-    let wanted = |f: &Family| arguments.family.is_empty() || arguments.family.contains(f);
+    let wanted = |f: &Family| match &arguments.ladders {
+        Some(_) => *f == Family::Ladder,
+        None => arguments.family.is_empty() || arguments.family.contains(f),
+    };
     let count = |few: u64, many: u64| {
         let own = if arguments.full { many } else { few };
         arguments.scenes.unwrap_or(own)
@@ -78,7 +84,7 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         if f.is_random() {
             n
         } else {
-            n.min(places::count())
+            n.min(places::count(arguments.full))
         }
     };
     let own = SCENES.into_iter().filter(|(f, ..)| wanted(f));
@@ -88,7 +94,10 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
             .map(|(f, few, many)| (f, of(f, count(few, many))))
             .collect(),
         shard: arguments.shard.unwrap_or(Shard::ALL),
+        all_steps: arguments.full || arguments.ladders.is_some(),
+        ladders: arguments.ladders.clone().unwrap_or_default(),
     };
+    let scenes = suite.scenes();
     let program = super::arguments::program_file()?;
     watch_for_interruption()?;
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
@@ -108,9 +117,8 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
         records: Records::of(claim.dir()),
         progress: &bar,
     };
-    let findings = suite::run(&mut workers, &suite)?;
+    let findings = suite::run(&mut workers, &scenes)?;
     bar.finish();
-    let total: u64 = suite.scenes.values().sum();
     let provenance =
         Provenance::collect(workers.lab.jobs).with_option("seed", suite.seed.to_string());
     let mut bundle = report::bundle(&findings, &provenance)?;
@@ -121,8 +129,9 @@ pub fn run(arguments: Arguments, mut plan: Plan) -> Result<bool, CliError> {
     show(&success(&summary::records(&findings)), "");
     show(&summary::of_ladders(&findings), "");
     say(format_args!(
-        "{} of {total} scenes. Results: {}",
+        "{} of {} scenes. Results: {}",
         findings.len(),
+        scenes.len(),
         claim.dir().display()
     ));
     for finding in &findings {

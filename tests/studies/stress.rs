@@ -7,6 +7,8 @@ use stickslip::run::verdict::Verdict;
 use stickslip::studies::lab::Inside;
 use stickslip::studies::stress::find::{DEFAULT, Effort, find};
 use stickslip::studies::stress::finding::{Fault, Finding};
+use stickslip::studies::stress::rungs::{Answer, Rung, judge};
+use stickslip::studies::stress::suite;
 use stickslip::studies::stress::transform::Transform;
 use stickslip::studies::stress::{Family, Scene, places, scene, summary};
 
@@ -92,18 +94,21 @@ fn scenes_are_reproducible_and_take_turns() {
     }
 }
 
-/// Goal: what a plain crack does in uniform stress depends neither on what it lies beside, nor on units and place: every step
-/// of these ladders is right, but for three cracks that nearly meet, of which the judge of the mesh says so, and what is
-/// refused with a place.
+/// All steps of some ladders.
+fn steps(of: impl Fn(&places::Ladder) -> bool) -> Vec<Scene> {
+    let own = (0..places::count(true)).filter(|number| of(places::step(*number).1));
+    own.map(|number| scene(Family::Ladder, 0, number)).collect()
+}
+
+/// Goal: what a plain crack does in uniform stress depends neither on its angle or a crack along it, nor on units and place:
+/// every step of these ladders is right, but for what is refused with a place.
 #[test]
 fn ladders_of_plain_cracks_are_right_at_every_step() {
-    let scenes = (0..places::count()).map(|number| scene(Family::Ladder, 0, number));
-    let plane: Vec<Scene> = scenes.filter(|scene| scene.dim == 2).collect();
+    let plane = steps(|ladder| ladder.dim == 2 && ladder.compared.is_none());
     let mut others = Vec::new();
     for finding in found(&plane, Effort::Default) {
-        let value = places::step(finding.scene.number).1;
+        let value = places::step(finding.scene.number).2.value;
         let allowed = match finding.scene.category.as_str() {
-            "three cracks beside a point" => Some(Fault::SuspectMesh),
             "mesh twisted" if value.abs() > 110.0 => Some(Fault::Refused),
             "unit of stress" if value < 1e-23 => Some(Fault::Refused),
             _ => None,
@@ -114,6 +119,77 @@ fn ladders_of_plain_cracks_are_right_at_every_step() {
         }
     }
     assert!(others.is_empty(), "{others:#?}");
+}
+
+/// Goal: where a crack ends, bends or meets another beside a grid line, an edge or a node decides nothing, whether cracks
+/// stick or slip, at distances down to 1e-13 of a cell, and whatever the digits of its coordinates. Tolerance: 1e-3 from one
+/// step to the next, of what a crack of six cells changes where it is moved by 1e-3 of one.
+#[test]
+fn answers_do_not_jump_where_cracks_are_moved_past_the_mesh() {
+    let cracks = ["end past line", "crossing past edge", "mouth past node"];
+    let loads = cracks.map(|name| ["sticks", "slips"].map(|load| format!("{name}, {load}")));
+    let mut scenes = steps(|ladder| loads.as_flattened().contains(&ladder.name));
+    scenes.retain(|own| places::step(own.number).2.usual);
+    let findings = suite::run(&mut Inside::default(), &scenes).expect("nothing is kept");
+    let rows = summary::of_ladders(&findings);
+    assert_eq!(rows.len(), 6);
+    for row in rows {
+        assert_eq!((row.ended[0], row.steps), (24, 24), "{row:?}");
+        // Both rules had something to compare.
+        let [near, far] = row.apart.map(|own| own.0);
+        assert!(near <= 1e-3 && (0.0..0.02).contains(&far), "{row:?}");
+    }
+}
+
+/// Goal: the judge of ladders sees what is planted: a jump of 2e-3 of one quantity of one crack at the step where it is, also
+/// over a step without an answer and between digits; a difference from other cells, but where these join another end.
+#[test]
+fn jumps_that_are_planted_are_found_where_they_are() {
+    let answer = |factor: f64| Answer {
+        cracks: vec![[3.0, -4.0, 1e-5, 2.0], [300.0, 0.0, factor * 1e-6, 200.0]],
+        joined: 0,
+    };
+    let values = [-1.0, -1e-6, -1e-9, 0.0, 1e-9, 1e-6, 1.0, 16.0, 9.0, 2.0];
+    let rungs = values.map(|value| Rung {
+        value,
+        near: ![-1.0, 1.0, 2.0].contains(&value),
+        answers: [Some(answer(1.0)), None],
+    });
+    let faults = |slips: bool, change: &dyn Fn(&mut [Rung])| {
+        let mut rungs = rungs.to_vec();
+        change(&mut rungs);
+        let judged = judge(&rungs, slips).into_iter().zip(values);
+        let told = judged.filter_map(|((fault, _), value)| Some((fault?, value)));
+        told.collect::<Vec<_>>()
+    };
+    let from = |place: usize, to: usize, factor: f64| {
+        move |rungs: &mut [Rung]| {
+            for rung in &mut rungs[place..to] {
+                rung.answers[0] = Some(answer(factor));
+            }
+        }
+    };
+    assert_eq!(faults(true, &from(4, 6, 1.0005)), []);
+    assert_eq!(faults(true, &from(4, 6, 1.002)), [(Fault::Jump, 1e-9)]);
+    // Beyond 1e-3 of a cell neighbours may differ, and cracks that stick have no slip.
+    assert_eq!(faults(true, &from(6, 7, 1.5)), []);
+    assert_eq!(faults(false, &from(4, 6, 1.5)), []);
+    assert_eq!(faults(true, &from(8, 9, 0.998)), [(Fault::Jump, 9.0)]);
+    let hidden = |rungs: &mut [Rung]| {
+        from(5, 6, 1.002)(rungs);
+        rungs[4].answers[0] = None;
+    };
+    assert_eq!(faults(true, &hidden), [(Fault::Jump, 1e-6)]);
+    let other = |joined: usize, force: f64| {
+        move |rungs: &mut [Rung]| {
+            let mut other = answer(1.0);
+            (other.joined, other.cracks[1][0]) = (joined, force);
+            rungs[6].answers[1] = Some(other);
+        }
+    };
+    assert_eq!(faults(false, &other(0, 340.0)), [(Fault::OtherCells, 1.0)]);
+    assert_eq!(faults(false, &other(1, 340.0)), []);
+    assert_eq!(faults(false, &other(0, 320.0)), []);
 }
 
 /// A scene of cracks that end inside, with branch functions or not: right as it is.

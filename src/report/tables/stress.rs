@@ -67,8 +67,9 @@ impl Row for InvarianceRow {
 impl Row for LadderRow {
     const NAME: &'static str = "stress_ladders";
     const TITLE: &'static str = "One parameter at a time";
-    const QUESTION: &'static str = "How far can a parameter go before digits are lost?";
-    const NOTES: &'static str = "Plates and cubes with plain cracks that stick in uniform compression; the error is that against the closed form.";
+    const QUESTION: &'static str =
+        "How far can a parameter go before digits are lost, and where do answers jump?";
+    const NOTES: &'static str = "Plates and cubes with plain cracks; those that stick are in uniform compression, and the error is that against the closed form, otherwise that of the energy. `A past B`: feature A of cracks at ±1, ±1/3, … 3⁻²⁷ of a cell and 0 from B, and at 0 with all coordinates rounded to 16 to 2 digits, by the default method. Compared are the force, the mean slip and the dissipation of every crack: up to 1e-3 of a cell with those of the neighbour, over the larger of both (more than 1e-3 is a jump); beyond with those in 1.39 times as many cells, over the largest of all cracks (more than 10 % is a fault), where both join as many ends with what they nearly touch. Other tips and spaces than the default may step where a tip leaves a cell: their jumps are no fault.";
 
     fn columns() -> Vec<Column<Self>> {
         columns! { r: Self,
@@ -77,10 +78,20 @@ impl Row for LadderRow {
             "least" "" .shown().significant(3) = r.range[0], "least value, in the unit of the parameter";
             "largest" "" .shown().significant(3) = r.range[1], "largest value";
             "values" "" .shown() = r.steps, "values tried";
-            "right" "" .shown() = r.right, "values at which the default method's answer was right";
-            "others" "" .shown() = r.others.clone(), "the other values with their faults";
+            "right" "" .shown() = r.ended[0], "values at which the default method's answer was right";
+            "refused" "" .shown() = r.ended[1], "refused at a place in the file";
+            "jumps" "" .shown() = r.ended[2], "differs from a neighbour";
+            "wrong" "" .shown() = r.ended[3], "the closed form or the energy is missed; of pairs by more than 1e-7 of the energy, or 1e-5 of anything else";
+            "other_cells" "" .shown().named("other cells") = r.ended[4], "other than in other cells";
+            "suspect" "" .shown() = r.ended[5], "the judge doubts the mesh";
+            "crashed" "" .shown() = r.ended[6], "no answer for another reason";
             "error" "–" .shown().residual() = r.error, "largest error where it was right";
-            "iterations" "" .shown() = r.iterations, "most iterations of the default method where it was right";
+            "neighbour" "–" .shown().significant(2).power(2) = r.apart[0].0, "largest difference of neighbours; `NaN` where nothing is compared";
+            "neighbour_at" "" .shown().significant(3).named("at") = r.apart[0].1, "value of that step";
+            "mesh" "–" .shown().significant(2).power(2) = r.apart[1].0, "largest difference from other cells";
+            "mesh_at" "" .shown().significant(3).named("at") = r.apart[1].1, "value of that step";
+            "beyond" "" .shown().named("> 2 %") = r.beyond, "how many differ by more than 2 % from other cells: the mesh may leave as much";
+            "others" "" = r.others.clone(), "values that are not right, by fault";
         }
     }
 }

@@ -5,7 +5,7 @@
 //! these change it.
 
 use super::finding::{Fault, Finding, Seen, is_done};
-use super::scene::Scene;
+use super::scene::{Family, Scene};
 use super::transform::Transform;
 use crate::case::{self, Case};
 use crate::run::choice::Choice;
@@ -149,6 +149,7 @@ impl<'a> Open<'a> {
         let look = Looks {
             check: true,
             why: true,
+            quantities: scene.family == Family::Ladder,
             ..Looks::default()
         };
         own.next = own.tasks(DEFAULT, &own.axes(), look);

@@ -24,6 +24,10 @@ pub enum Fault {
     FalseClaim,
     /// The answer changes with units, place, names of sides, faces or axes.
     NotInvariant,
+    /// It changes where a feature of the cracks hardly moves.
+    Jump,
+    /// It is not that in cells of another size.
+    OtherCells,
     /// The program failed with an error that names no place in the file.
     NoPlace,
     /// The factorisation found the stiffness not positive definite, or failed otherwise.
@@ -44,6 +48,8 @@ pub enum Fault {
     SeveralSolutions,
     /// Solved, with an error that is the rounding of the arithmetic.
     Floor,
+    /// A jump of a contact space or an enrichment that may step where a tip leaves a cell.
+    Step,
 }
 
 impl Fault {
@@ -57,6 +63,8 @@ impl Fault {
             Self::WrongEnergy => "wrong energy",
             Self::FalseClaim => "false claim",
             Self::NotInvariant => "not invariant",
+            Self::Jump => "jump",
+            Self::OtherCells => "other cells",
             Self::NoPlace => "error without a place",
             Self::Factorisation => "factorisation",
             Self::SuspectMesh => "suspect mesh",
@@ -67,6 +75,7 @@ impl Fault {
             Self::FrictionLimit => "limit of friction",
             Self::SeveralSolutions => "several solutions",
             Self::Floor => "floor of the arithmetic",
+            Self::Step => "step",
         }
     }
 
@@ -125,6 +134,8 @@ pub struct Finding {
     pub reason: String,
     /// Largest difference of contact forces between exact methods, over the largest force [-].
     pub disagreement: Option<f64>,
+    /// In a ladder of places the difference from the rung beside, or from other cells [-]; NaN: not compared.
+    pub apart: f64,
     /// Ways to see it that leave the answer as it is.
     pub seen: Vec<Seen>,
     /// All methods, the default one first; none where the case cannot be read.
@@ -142,6 +153,7 @@ impl Finding {
             fault: Some(fault),
             reason: line.chars().take(300).collect(),
             disagreement: None,
+            apart: f64::NAN,
             seen: Vec::new(),
             records: Vec::new(),
             minimal: None,

@@ -1,12 +1,34 @@
-//! Ladders: one parameter at a time of a body in uniform compression whose cracks stick, through its decades: where these lie, what
-//! they are measured in.
+//! Ladders: one parameter at a time of a body with plain cracks through its decades: where these lie, what they are measured in.
 //!
 //! Random scenes say how often something breaks; a ladder says where it begins to. A step is a scene like any other.
 
 use std::fmt::Write;
 use std::sync::LazyLock;
 
+use super::pairs;
 use super::uniform::sides;
+
+/// How answers are compared, by the default method alone.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Compared {
+    /// Whether the cracks slip.
+    pub slips: bool,
+    /// Whether their space or tips may step where a tip leaves a cell.
+    pub may_step: bool,
+}
+
+/// A value of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// The value.
+    pub value: f64,
+    /// The case.
+    pub text: String,
+    /// The case in other cells, where its answer is compared with that.
+    pub other: Option<String>,
+    /// Whether it is tried by default.
+    pub usual: bool,
+}
 
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,8 +39,10 @@ pub struct Ladder {
     pub parameter: String,
     /// Space dimension.
     pub dim: usize,
-    /// Values and cases.
-    steps: Vec<(f64, String)>,
+    /// How its answers are compared with those of neighbours and other cells; none: every one is judged alone.
+    pub compared: Option<Compared>,
+    /// Its steps.
+    pub steps: Vec<Step>,
 }
 
 impl Ladder {
@@ -29,46 +53,49 @@ impl Ladder {
         values: impl IntoIterator<Item = f64>,
         text: impl Fn(f64) -> String,
     ) -> Self {
+        let step = |value: f64| Step {
+            value,
+            text: text(value),
+            other: None,
+            usual: true,
+        };
         Ladder {
             name: name.into(),
             parameter: parameter.into(),
             dim,
-            steps: values.into_iter().map(|v| (v, text(v))).collect(),
+            compared: None,
+            steps: values.into_iter().map(step).collect(),
         }
     }
 }
 
-/// All: of plane bodies, of solids.
+/// All: of plane bodies, of solids, of pairs.
 static LADDERS: LazyLock<Vec<Ladder>> = LazyLock::new(|| {
     let mut all = places();
     all.extend(units());
     all.extend(solids());
+    all.extend(pairs::ladders());
     all
 });
 
-/// All ladders.
-pub fn ladders() -> &'static [Ladder] {
-    &LADDERS
+/// All steps with the place of their ladder.
+static STEPS: LazyLock<Vec<(usize, &Ladder, &Step)>> = LazyLock::new(|| {
+    let ladders = LADDERS.iter().enumerate();
+    let steps =
+        ladders.flat_map(|(place, own)| own.steps.iter().map(move |step| (place, own, step)));
+    steps.collect()
+});
+
+/// Number of steps of the ladders whose answers may not step, which come first, or of all.
+pub fn count(full: bool) -> u64 {
+    let may_step = |own: &Ladder| own.compared.is_some_and(|own| own.may_step);
+    let own = STEPS.iter().filter(|own| full || !may_step(own.1));
+    own.count() as u64
 }
 
-/// Number of steps of all ladders.
-pub fn count() -> u64 {
-    LADDERS.iter().map(|own| own.steps.len() as u64).sum()
-}
-
-/// The ladder of a step with a number below [`count`], the value of its parameter there, and its case; of a number beyond the last
-/// one that.
-pub fn step(number: u64) -> (&'static Ladder, f64, &'static str) {
-    let all = LADDERS
-        .iter()
-        .flat_map(|own| own.steps.iter().map(move |step| (own, step)));
-    let last = (count() - 1).min(number) as usize;
-    let own = all
-        .skip(last)
-        .map(|(own, step)| (own, step.0, step.1.as_str()));
-    own.into_iter()
-        .next()
-        .unwrap_or((&LADDERS[0], f64::NAN, ""))
+/// The ladder of a step with a number below [`count`], after its place, and the step; of a number beyond the last one that.
+pub fn step(number: u64) -> (usize, &'static Ladder, &'static Step) {
+    STEPS[(STEPS.len() - 1).min(number as usize)]
 }
 
 /// 10^from, …, 10^to.
@@ -90,144 +117,113 @@ fn from_both_sides() -> Vec<f64> {
     below.chain([0.0]).chain(above).collect()
 }
 
-/// A plate of 4 × 3 in 16 × 12 cells, lengths in a unit, in uniform compression between rollers and pressures.
-#[derive(Clone)]
-struct Patch {
-    unit: f64,
-    young: f64,
-    moved: f64,
-    twist: f64,
-    cracks: Vec<Vec<[f64; 2]>>,
+/// A plate, at first of 4 × 3 in 16 × 12 cells, lengths in a unit, with cracks.
+pub(super) struct Patch {
+    pub(super) size: [f64; 2],
+    pub(super) cells: [usize; 2],
+    pub(super) unit: f64,
+    pub(super) young: f64,
+    pub(super) moved: f64,
+    pub(super) twist: f64,
+    /// Whether its cracks slip; they stick in uniform compression between rollers and pressures.
+    pub(super) slips: bool,
+    /// What is said of every crack beside.
+    pub(super) form: &'static str,
+    pub(super) cracks: Vec<Vec<[f64; 2]>>,
 }
 
 impl Patch {
-    fn new(cracks: &[&[[f64; 2]]]) -> Self {
+    pub(super) fn new(cracks: &[Vec<[f64; 2]>]) -> Self {
         Patch {
+            size: [4.0, 3.0],
+            cells: [16, 12],
             unit: 1.0,
             young: 1e10,
             moved: 0.0,
             twist: 0.0,
-            cracks: cracks.iter().map(|c| c.to_vec()).collect(),
+            slips: false,
+            form: "",
+            cracks: cracks.to_vec(),
         }
     }
 
-    fn text(&self) -> String {
-        let place = |v: f64| (v + 4.0 * self.moved) * self.unit;
+    pub(super) fn text(&self) -> String {
+        let place = |v: f64| (v + self.size[0] * self.moved) * self.unit;
+        let (low, high, cells) = (place(0.0), self.size.map(place), self.cells);
         let mut text = format!(
-            "title = \"ladder\"\nmodel = \"plane-strain\"\ntolerance = 1e-12\n[material]\nyoung_pa = {:?}\npoisson = 0.3\n",
+            "title = \"ladder\"\nmodel = \"plane-strain\"\ntolerance = 1e-12\n[material]\nyoung_pa = {:?}\npoisson = 0.3\n\
+             [mesh.box]\nmin_m = [{low:?}, {low:?}]\nmax_m = {high:?}\ncells = {cells:?}\n",
             self.young
-        );
-        let (low, high) = (place(0.0), [place(4.0), place(3.0)]);
-        let _ = write!(
-            text,
-            "[mesh.box]\nmin_m = [{low:?}, {low:?}]\nmax_m = [{:?}, {:?}]\ncells = [16, 12]\n",
-            high[0], high[1]
         );
         if self.twist != 0.0 {
             let _ = write!(text, "[mesh.twist]\nangle_deg = {:?}\n", self.twist);
         }
+        // The pressures stand 2 : 3: with more than 0.21 a crack sticks at any angle.
+        let friction = if self.slips { 0.1 } else { 0.5 };
         for crack in &self.cracks {
             let points: Vec<[f64; 2]> = crack.iter().map(|p| p.map(place)).collect();
-            // The stresses stand 2 : 3; more than that sticks at any angle.
-            let _ = write!(text, "[[crack]]\npoints_m = {points:?}\nfriction = 0.5\n");
-        }
-        for (side, free) in [("left", "0.0, \"free\""), ("bottom", "\"free\", 0.0")] {
+            let form = self.form;
             let _ = write!(
                 text,
-                "[[support]]\non = \"{side}\"\ndisplacement_m = [{free}]\n"
+                "[[crack]]\npoints_m = {points:?}\nfriction = {friction:?}\n{form}\n"
             );
         }
-        for (side, share) in [("right", 2e-4), ("top", 3e-4)] {
-            let pressure = share * self.young;
-            let _ = write!(
-                text,
-                "[[load]]\non = \"{side}\"\npressure_pa = {pressure:?}\n"
+        let held = |(side, free): (&str, &str)| {
+            format!("[[support]]\non = \"{side}\"\ndisplacement_m = [{free}]\n")
+        };
+        let loaded = |(side, load, shares): (&str, &str, &[f64])| {
+            let pa: Vec<f64> = shares.iter().map(|share| share * self.young).collect();
+            let pa = if let [one] = pa[..] {
+                format!("{one:?}")
+            } else {
+                format!("{pa:?}")
+            };
+            format!("[[load]]\non = \"{side}\"\n{load}_pa = {pa}\n")
+        };
+        if self.slips {
+            // Principal pressures of 3 and 1, the larger one 33 degrees from x.
+            text += &held(("bottom", "0.0, 0.0"));
+            for (side, [x, y]) in [
+                ("left", [2.4, 0.9]),
+                ("right", [-2.4, -0.9]),
+                ("top", [-0.9, -1.6]),
+            ] {
+                text += &loaded((side, "traction", &[1e-4 * x, 1e-4 * y]));
+            }
+        } else {
+            text.extend([("left", "0.0, \"free\""), ("bottom", "\"free\", 0.0")].map(held));
+            text.extend(
+                [
+                    ("right", "pressure", &[2e-4][..]),
+                    ("top", "pressure", &[3e-4]),
+                ]
+                .map(loaded),
             );
         }
         text
     }
 }
 
-/// Side of a cell of [`Patch`].
-const H: f64 = 0.25;
-
-/// Where cracks lie: distances in cells, to what they nearly touch.
+/// Angles and the distance of cracks beside each other.
 fn places() -> Vec<Ladder> {
-    let sided = |name: &str, what: &str, cracks: &dyn Fn(f64) -> Vec<Vec<[f64; 2]>>| {
-        let parameter = format!("{what} [cells]");
-        Ladder::new(name, &parameter, 2, from_both_sides(), |v| {
-            let cracks = cracks(v * H);
-            Patch {
-                cracks,
-                ..Patch::new(&[])
-            }
-            .text()
-        })
-    };
-    let inner = vec![[0.9, 0.8], [2.9, 2.1]];
-    let node = [2.25, 1.75];
-    let angles = [
-        0.0,
-        1e-8,
-        1e-4,
-        1.0,
-        10.0,
-        27.0,
-        45.0,
-        63.0,
-        80.0,
-        89.0,
-        89.9999,
-        89.99999999,
-        90.0,
-    ];
+    let small = [0.0, 1e-8, 1e-4, 1.0, 10.0, 27.0, 45.0];
+    let angles = small.into_iter().chain(small.map(|angle| 90.0 - angle));
     vec![
-        sided("along a grid line", "distance to it", &|d| {
-            vec![vec![[-1.0, 1.5 + d], [5.0, 1.5 + d]]]
-        }),
-        sided("through a node", "distance to it", &|d| {
-            let at = [node[0], node[1] + d];
-            vec![vec![[at[0] - 4.0, at[1] - 1.7], [at[0] + 4.0, at[1] + 1.7]]]
-        }),
-        sided("tip beside a node", "distance to it", &|d| {
-            vec![vec![[0.9, 0.9], [node[0] + d, node[1]]]]
-        }),
-        sided("tip beside a side", "distance inside it", &|d| {
-            vec![vec![[1.4, 1.1], [4.0 - d, 1.9]]]
-        }),
-        sided("tip beside a crack", "distance beyond it", &|d| {
-            vec![inner.clone(), vec![[2.6, 0.3], [1.9 - 0.5 * d, 1.45 + d]]]
-        }),
-        sided("kink beside a crossing", "distance beyond it", &|d| {
-            let kink = vec![[0.4, 1.1], [1.9 + d, 1.45], [3.3, 2.6]];
-            vec![kink, vec![[1.9, 0.5], [1.9, 2.5]]]
-        }),
-        sided("three cracks beside a point", "distance to it", &|d| {
-            let through = |x: f64, y: f64, a: f64, b: f64| vec![[x - a, y - b], [x + a, y + b]];
-            vec![
-                through(2.1, 1.4, 1.3, 0.2),
-                through(2.1, 1.4, 0.5, 1.1),
-                through(2.1 + d, 1.4, -0.8, 0.9),
-            ]
-        }),
         Ladder::new(
             "parallel cracks",
             "distance [cells]",
             2,
             decades(0, -14),
             |v| {
-                let d = v * H;
-                Patch::new(&[
-                    &[[0.7, 0.8], [3.1, 1.9]],
-                    &[[0.9, 0.9 + d], [2.9, 1.0 + d + 49.0 / 60.0]],
-                ])
-                .text()
+                let d = v / 4.0;
+                let other = vec![[0.9, 0.9 + d], [2.9, 1.0 + d + 49.0 / 60.0]];
+                Patch::new(&[vec![[0.7, 0.8], [3.1, 1.9]], other]).text()
             },
         ),
         Ladder::new("angle", "to the grid [degrees]", 2, angles, |v| {
             let (sin, cos) = v.to_radians().sin_cos();
             let ends = [-1.0, 1.0].map(|s| [2.1 + 1.2 * s * cos, 1.4 + 1.2 * s * sin]);
-            Patch::new(&[&ends]).text()
+            Patch::new(&[ends.to_vec()]).text()
         }),
     ]
 }
@@ -237,7 +233,7 @@ const ANYHOW: [[f64; 2]; 2] = [[0.93, 0.77], [2.87, 2.13]];
 
 /// Where the body lies, how its mesh is turned, and what it is measured in.
 fn units() -> Vec<Ladder> {
-    let patch = || Patch::new(&[&ANYHOW]);
+    let patch = || Patch::new(&[ANYHOW.to_vec()]);
     let every = |from: i32, to: i32, step: usize| decades(from, to).into_iter().step_by(step);
     let twists = (-6..=6).map(|k| 20.0 * f64::from(k));
     let moved = [0.0].into_iter().chain(decades(0, 6));

@@ -118,13 +118,13 @@ pub struct Scene {
 
 /// The step of a ladder, by its number.
 fn step(number: u64) -> Scene {
-    let (ladder, _, text) = places::step(number);
+    let (_, ladder, step) = places::step(number);
     Scene {
         family: Family::Ladder,
         number,
         category: ladder.name.clone(),
         dim: ladder.dim,
-        text: text.to_owned(),
+        text: step.text.clone(),
         beyond: false,
     }
 }

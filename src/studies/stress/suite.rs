@@ -4,12 +4,15 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::find::{Effort, find};
 use super::finding::{Fault, Finding};
+use super::places::{self, Ladder};
+use super::rungs;
 use super::scene::{Family, Scene, scene};
 use super::shrink::smaller;
+
 use crate::studies::lab::{Ask, LabError, Shard};
 
-/// Scenes asked for at once.
-const TOGETHER: usize = 64;
+/// Scenes asked for at once: as many as a ladder of pairs has steps.
+const TOGETHER: usize = 72;
 
 /// Scenes of one family, category and fault that are made small: they are likely the same.
 const SHRUNK: usize = 2;
@@ -27,25 +30,55 @@ pub struct Suite {
     pub seed: u64,
     /// Scenes per family.
     pub scenes: BTreeMap<Family, u64>,
-    /// Which part: every so many scenes of a family.
+    /// Which part: every so many scenes of a family, or ladders.
     pub shard: Shard,
+    /// Only ladders whose name has this in it.
+    pub ladders: String,
+    /// Whether all steps of these are tried.
+    pub all_steps: bool,
 }
 
-/// Findings on all scenes of a suite, in order; fewer where it was told to stop.
+impl Suite {
+    /// All scenes, in order.
+    pub fn scenes(&self) -> Vec<Scene> {
+        let all = (self.scenes.iter()).flat_map(|(&family, &n)| (0..n).map(move |k| (family, k)));
+        let Shard { number, of } = self.shard;
+        // A part has whole ladders.
+        let wanted = |(family, k): &(Family, u64)| {
+            if family.is_random() {
+                return *k as usize % of == number - 1;
+            }
+            let (place, ladder, step) = places::step(*k);
+            let asked = self.all_steps || step.usual;
+            asked && place % of == number - 1 && ladder.name.contains(&self.ladders)
+        };
+        let own = all.filter(wanted);
+        own.map(|(family, k)| scene(family, self.seed, k)).collect()
+    }
+}
+
+/// The ladder of a step that is compared with others.
+fn compared(scene: &Scene) -> Option<&'static Ladder> {
+    let own = (!scene.family.is_random()).then(|| places::step(scene.number).1);
+    own.filter(|ladder| ladder.compared.is_some())
+}
+
+/// Findings on the scenes of a suite, in order; fewer where it was told to stop.
 ///
 /// # Errors
 /// [`LabError`].
-pub fn run(ask: &mut dyn Ask, suite: &Suite) -> Result<Vec<Finding>, LabError> {
-    let all = (suite.scenes.iter()).flat_map(|(&family, &n)| (0..n).map(move |k| (family, k)));
-    let Shard { number, of } = suite.shard;
-    let own = all.filter(|own| own.1 as usize % of == number - 1);
-    let scenes: Vec<Scene> = own
-        .map(|(family, k)| scene(family, suite.seed, k))
-        .collect();
+pub fn run(ask: &mut dyn Ask, scenes: &[Scene]) -> Result<Vec<Finding>, LabError> {
     let (mut findings, mut shrunk) = (Vec::new(), BTreeMap::new());
-    for together in scenes.chunks(TOGETHER) {
-        let mut found = find(ask, together, Effort::All)?;
-        shrink(ask, &mut found, &mut shrunk)?;
+    let name = |own: &Scene| compared(own).map(|ladder| &ladder.name);
+    let ladders = scenes.chunk_by(|a, b| name(a) == name(b));
+    for together in ladders.flat_map(|own| own.chunks(TOGETHER)) {
+        let found = if let Some(ladder) = compared(&together[0]) {
+            rungs::find(ask, ladder, together)?
+        } else {
+            let mut found = find(ask, together, Effort::All)?;
+            shrink(ask, &mut found, &mut shrunk)?;
+            found
+        };
         let stopped = found.len() < together.len();
         findings.extend(found);
         if stopped {

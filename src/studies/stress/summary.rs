@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::find::INVARIANT;
 use super::finding::{Fault, Finding, Seen};
-use super::places::{Ladder, ladders, step};
+use super::places::{Ladder, Step, step};
 use super::scene::Family;
 use crate::run::verdict::Verdict;
 use crate::studies::record::Record;
@@ -66,15 +66,20 @@ pub struct LadderRow {
     pub range: [f64; 2],
     /// Values tried.
     pub steps: usize,
-    /// Values at which the answer was right.
-    pub right: usize,
-    /// The others: values and faults.
+    /// How many are right, refused, jump, wrong, other than in other cells, suspect, and without an answer.
+    pub ended: [usize; 7],
+    /// Values by fault.
     pub others: String,
     /// Largest error where right [-].
     pub error: f64,
-    /// Most iterations of the default method where right.
-    pub iterations: usize,
+    /// Largest difference of neighbours, and from other cells, with their values; NaN where nothing is compared.
+    pub apart: [(f64, f64); 2],
+    /// Steps that differ by more than [`MESH`] from other cells.
+    pub beyond: usize,
 }
+
+/// Difference from other cells that is worth a look [-].
+const MESH: f64 = 0.02;
 
 /// File of the smallest case of a finding.
 pub fn minimal(finding: &Finding) -> Option<String> {
@@ -169,33 +174,63 @@ pub fn records(findings: &[Finding]) -> Vec<Record> {
     answered.flat_map(of).collect()
 }
 
+/// Place of a fault in [`LadderRow::ended`].
+fn ended(fault: Option<Fault>) -> usize {
+    match fault {
+        None | Some(Fault::Floor) => 0,
+        Some(Fault::Refused | Fault::Beyond) => 1,
+        Some(Fault::Jump | Fault::Step) => 2,
+        Some(Fault::WrongPatch | Fault::WrongEnergy | Fault::FalseClaim) => 3,
+        Some(Fault::OtherCells) => 4,
+        Some(Fault::SuspectMesh) => 5,
+        Some(_) => 6,
+    }
+}
+
 /// Every ladder that has findings.
-pub fn of_ladders(findings: &[Finding]) -> Vec<LadderRow> {
-    let row = |ladder: &Ladder| {
-        let all = findings.iter().filter(|f| f.scene.family == Family::Ladder);
-        let own = all.filter(|f| f.scene.category == ladder.name);
-        let own: Vec<(f64, &Finding)> = own.map(|f| (step(f.scene.number).1, f)).collect();
-        let others = own.iter();
-        let others = others.filter_map(|(v, f)| Some(format!("at {v:e}: {}", f.fault?)));
-        let right: Vec<&Finding> = (own.iter().map(|own| own.1))
-            .filter(|f| f.fault.is_none())
-            .collect();
-        let values = || own.iter().map(|own| own.0);
-        let errors = right.iter().map(|f| f.error());
-        let iterations = right.iter().filter_map(|f| f.records.first());
-        let iterations = iterations.map(|own| own.found.sum(|step| step.iterations));
-        Some(LadderRow {
+pub fn of_ladders<'a>(findings: &'a [Finding]) -> Vec<LadderRow> {
+    let all = findings.iter().filter(|f| f.scene.family == Family::Ladder);
+    let with = |f: &'a Finding| {
+        let (place, ladder, step) = step(f.scene.number);
+        (place, ladder, step, f)
+    };
+    let all: Vec<(usize, &Ladder, &Step, &Finding)> = all.map(with).collect();
+    let row = |own: &[(usize, &Ladder, &Step, &Finding)]| {
+        let ladder = own[0].1;
+        let mut others: BTreeMap<Fault, Vec<String>> = BTreeMap::new();
+        for (.., step, f) in own {
+            if let Some(fault) = f.fault {
+                let values = others.entry(fault).or_default();
+                values.push(match step.value {
+                    whole if whole.fract() == 0.0 => whole.to_string(),
+                    value => format!("{value:.1e}"),
+                });
+            }
+        }
+        let told =
+            |(fault, values): (&Fault, &Vec<String>)| format!("{fault}: {}", values.join(" "));
+        let values = || own.iter().map(|own| own.2.value);
+        let count = |k: usize| own.iter().filter(|own| ended(own.3.fault) == k).count();
+        let apart = |far: bool| {
+            let own = own.iter().filter(move |own| own.2.other.is_some() == far);
+            own.map(|own| (own.3.apart, own.2.value))
+                .filter(|own| !own.0.is_nan())
+        };
+        let worst = |far: bool| apart(far).max_by(|a, b| a.0.total_cmp(&b.0));
+        let right = own.iter().filter(|own| own.3.fault.is_none());
+        LadderRow {
             ladder: ladder.name.clone(),
             parameter: ladder.parameter.clone(),
-            range: [values().reduce(f64::min)?, values().reduce(f64::max)?],
+            range: [f64::min, f64::max].map(|of| values().fold(own[0].2.value, of)),
             steps: own.len(),
-            right: right.len(),
-            others: others.collect::<Vec<_>>().join("; "),
-            error: errors.fold(0.0, f64::max),
-            iterations: iterations.max().unwrap_or(0),
-        })
+            ended: [0, 1, 2, 3, 4, 5, 6].map(count),
+            others: others.iter().map(told).collect::<Vec<_>>().join("; "),
+            error: right.map(|own| own.3.error()).fold(0.0, f64::max),
+            apart: [false, true].map(|far| worst(far).unwrap_or((f64::NAN, f64::NAN))),
+            beyond: apart(true).filter(|own| own.0 > MESH).count(),
+        }
     };
-    ladders().iter().filter_map(row).collect()
+    all.chunk_by(|a, b| a.0 == b.0).map(row).collect()
 }
 
 /// Whether the program did nothing wrong: no fault, and no scene with one answer that the default method missed.
