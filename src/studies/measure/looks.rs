@@ -157,9 +157,10 @@ impl Scene<'_> {
             points: self.system.points(),
             unknowns: self.system.rows(),
             uniform_stress: self.uniform_stress(),
-            joined: self
-                .body()
-                .map_or(0, |(_, loading)| loading.body().joined.len()),
+            joined: self.body().map_or(0, |(_, loading)| {
+                let moved = loading.body().moved.iter();
+                moved.filter(|moved| moved.joined).count()
+            }),
             unique,
             operator: self.operator(),
         }
