@@ -53,7 +53,7 @@ pub struct Enrichment {
     /// Boxes around all that may be at a tip or front other than a corner, with room for rounding, and its number.
     at_tips: (Boxes, Vec<usize>),
     /// 2D: where arms with branch functions bend or meet.
-    corners: Vec<Corner>,
+    pub corners: Vec<Corner>,
     /// By arm: those where it is long enough for multipliers of its own.
     corners_of: BTreeMap<usize, Vec<usize>>,
     /// Where branch functions are singular in 2D, and the same by place.
