@@ -290,9 +290,17 @@ impl Graph {
         const NONE: usize = usize::MAX;
         let mut ring_of = vec![NONE; 2 * self.edges.len()];
         let mut parts: Vec<Part> = Vec::new();
-        for first in 0..ring_of.len() {
-            let outer = first % 2 == 1 && matches!(self.edges[first / 2].kind, Kind::Border(_));
-            if ring_of[first] != NONE || outer {
+        // Those on side 1 first, then those on side 2, then a cell that nothing divides.
+        let halves = |side: usize| (0..self.edges.len()).map(move |k| 2 * k + side);
+        let is_face = |half: &usize| matches!(self.edges[half / 2].kind, Kind::Face(..));
+        let is_outer =
+            |half: &usize| half % 2 == 1 && matches!(self.edges[half / 2].kind, Kind::Border(_));
+        let faces = [0, 1]
+            .into_iter()
+            .flat_map(|side| halves(side).filter(is_face));
+        let others = (0..ring_of.len()).filter(|half| !is_outer(half));
+        for first in faces.chain(others) {
+            if ring_of[first] != NONE {
                 continue;
             }
             let mut ring = Vec::new();

@@ -145,51 +145,6 @@ pub fn contains(polygon: &[Point], x: &Point) -> bool {
     inside
 }
 
-/// Cuts a polygon along a chain whose ends lie on its outline: the parts to the left and to the right of the chain.
-///
-/// An end that coincides with a corner is that corner, otherwise it becomes one on the nearest edge. `None` if a part
-/// would have fewer than three corners.
-pub fn split(polygon: &[Point], chain: &[Point]) -> Option<[Polygon; 2]> {
-    let mut outline = polygon.to_vec();
-    let (first, last) = (chain.first()?, chain.last()?);
-    place(&mut outline, first);
-    place(&mut outline, last);
-    let position = |x: &Point| outline.iter().position(|c| c == x);
-    let (from, to) = (position(first)?, position(last)?);
-    if from == to {
-        return None;
-    }
-    let walk = |start: usize, end: usize| {
-        let count = outline.len();
-        let steps = (end + count - start) % count;
-        (1..steps)
-            .map(move |k| (start + k) % count)
-            .map(|i| outline[i])
-            .collect::<Vec<_>>()
-    };
-    // Corners off the chain first: collapsed rules crowd at the first corner, where nothing should be singular.
-    let mut left = walk(to, from);
-    left.extend(chain);
-    let mut right = walk(from, to);
-    right.extend(chain.iter().rev());
-    (left.len() > 2 && right.len() > 2).then_some([left, right])
-}
-
-/// Makes a point of the outline a corner.
-fn place(outline: &mut Polygon, x: &Point) {
-    if outline.contains(x) {
-        return;
-    }
-    let nearest = (0..outline.len()).min_by(|&i, &j| {
-        let distance =
-            |k: usize| segment_distance(x, &outline[k], &outline[(k + 1) % outline.len()]);
-        distance(i).total_cmp(&distance(j))
-    });
-    if let Some(i) = nearest {
-        outline.insert(i + 1, *x);
-    }
-}
-
 /// True if no corner turns right.
 pub fn is_convex(polygon: &[Point]) -> bool {
     let count = polygon.len();
@@ -216,54 +171,22 @@ pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
 mod tests {
     use super::*;
 
-    fn square() -> Polygon {
-        vec![
-            [0.0, 0.0, 0.0],
+    #[test]
+    fn triangles_fill_a_part_that_is_not_convex() {
+        let part = [
             [1.0, 0.0, 0.0],
             [1.0, 1.0, 0.0],
-            [0.0, 1.0, 0.0],
-        ]
-    }
-
-    fn filled(polygon: &[Point]) -> f64 {
-        triangles(polygon)
-            .iter()
-            .map(|t| 0.5 * doubled_area(&t[0], &t[1], &t[2]))
-            .sum()
-    }
-
-    #[test]
-    fn a_kinked_chain_leaves_two_parts_that_triangles_fill() {
-        let chain = [
-            [0.3, 0.0, 0.0],
-            [0.8, 0.5, 0.0],
-            [0.2, 0.6, 0.0],
             [0.3, 1.0, 0.0],
+            [0.2, 0.6, 0.0],
+            [0.8, 0.5, 0.0],
+            [0.3, 0.0, 0.0],
         ];
-        let [left, right] = split(&square(), &chain).unwrap();
-        assert!((area(&left) + area(&right) - 1.0).abs() < 1e-15);
-        assert!(contains(&left, &[0.1, 0.5, 0.0]) && contains(&right, &[0.9, 0.5, 0.0]));
-        for part in [left, right] {
-            assert!((filled(&part) - area(&part)).abs() < 1e-15);
-            let turns = |t: &[Point; 3]| doubled_area(&t[0], &t[1], &t[2]) > 0.0;
-            assert!(triangles(&part).iter().all(turns));
-        }
-    }
-
-    #[test]
-    fn chains_from_corner_to_corner_and_slivers_keep_their_area() {
-        let [upper, lower] = split(&square(), &[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]).unwrap();
-        assert_eq!((upper.len(), lower.len()), (3, 3));
-        let eps = 1e-12;
-        let [left, right] = split(&square(), &[[eps, 0.0, 0.0], [0.0, eps, 0.0]]).unwrap();
-        let sliver = left.len().min(right.len());
-        assert_eq!(sliver, 3);
-        let small = if left.len() == 3 { left } else { right };
-        assert!((area(&small) / (0.5 * eps * eps) - 1.0).abs() < 1e-10);
-    }
-
-    #[test]
-    fn a_chain_that_touches_nothing_new_is_refused() {
-        assert!(split(&square(), &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]).is_none());
+        assert!(contains(&part, &[0.9, 0.5, 0.0]) && !contains(&part, &[0.1, 0.5, 0.0]));
+        let found = triangles(&part);
+        let areas = found
+            .iter()
+            .map(|t| 0.5 * doubled_area(&t[0], &t[1], &t[2]));
+        assert!(areas.clone().all(|area| area > 0.0));
+        assert!((areas.sum::<f64>() - area(&part)).abs() < 1e-15);
     }
 }

@@ -1,4 +1,4 @@
-//! Modelling lengths at ends of cracks: what an end nearly touches is joined with it, and a crack beside which one ends is parted there.
+//! Modelling lengths: what an end or a bend nearly touches is joined with it, and a crack beside which another ends is parted there.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -12,9 +12,9 @@ use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, root, sub, unit
 
 use super::around::Around;
 use super::snap::Net;
-use super::{DELTA, LINE};
+use super::{BEND, DELTA, LINE};
 
-/// An end closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
+/// An end or a bend closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
 /// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
 const JOINED: f64 = 1e-2;
 
@@ -23,9 +23,6 @@ const FOLLOWED: f64 = 10.0 * JOINED;
 
 /// A crack that another's end is nearer to than this, in the same units, is parted at the foot of that end.
 const BESIDE: f64 = 1.0;
-
-/// Lines more parallel than this do not cross where anybody would follow them, as sine of their angle.
-const PARALLEL: f64 = 1e-9;
 
 /// An end of a polyline.
 #[derive(Clone, Copy)]
@@ -38,8 +35,8 @@ struct End {
     ahead: Point,
 }
 
-/// Joins the ends of polylines with what they nearly touch, all as they were put: by no order. The ends that were moved: which line,
-/// from where and to where [m].
+/// Joins the ends and bends of polylines with what they nearly touch, all as they were put: by no order. Those that were moved: which
+/// line, from where and to where [m].
 pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize, Point, Point)> {
     let size = around.lengths.smallest;
     let inside = |end: &End| !cells_at(around.mesh, &end.x).is_empty();
@@ -72,18 +69,20 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
             }
         }
     }
-    for (end, to) in &moved {
-        let place = if end.last {
-            lines[end.line].len() - 1
-        } else {
-            0
-        };
-        lines[end.line][place] = *to;
+    let place = |end: &End| [0, lines[end.line].len() - 1][usize::from(end.last)];
+    let led = moved.iter().map(|(end, to)| (end.line, place(end), *to));
+    let bends = bends_beside(around, lines, &ends).into_iter();
+    let bends =
+        bends.filter(|(line, k, to)| norm(&sub(to, &lines[*line][*k])) > around.lengths.rounding);
+    let led: Vec<(usize, usize, Point)> = led.chain(bends).collect();
+    let moved = led
+        .iter()
+        .map(|&(line, k, to)| (line, lines[line][k], to))
+        .collect();
+    for (line, k, to) in led {
+        lines[line][k] = to;
     }
     moved
-        .into_iter()
-        .map(|(end, to)| (end.line, end.x, to))
-        .collect()
 }
 
 /// The ends of an open polyline.
@@ -139,9 +138,6 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
     let places = segments.by_ref().filter_map(|w| {
         let (d, from) = (sub(&w[1], &w[0]), sub(&w[0], &end.x));
         let turn = cross(&end.ahead, &d)[2];
-        if turn.abs() <= PARALLEL * norm(&d) {
-            return None;
-        }
         let [t, share] = [
             cross(&from, &d)[2] / turn,
             cross(&from, &end.ahead)[2] / turn,
@@ -149,7 +145,73 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
         let inside = (0.0..=1.0).contains(&share) && t.abs() <= FOLLOWED * size;
         inside.then(|| add_scaled(&w[0], share, &d))
     });
-    places.min_by(|a, b| along(a).total_cmp(&along(b)))
+    let crossing = places.min_by(|a, b| along(a).total_cmp(&along(b)));
+    // It runs beside the other.
+    crossing.or_else(|| Some(foot(&end.x, points)?.1))
+}
+
+/// The point of a polyline nearest to a place, with its distance [m].
+fn foot(x: &Point, points: &[Point]) -> Option<(f64, Point)> {
+    let feet = points.windows(2).map(|w| segment_foot(x, &w[0], &w[1]));
+    let feet = feet.map(|foot| (norm(&sub(&foot, x)), foot));
+    feet.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The bends of polylines that nearly touch another or a side: which line and point, and where it is led [m]. Those beside ends stay:
+/// the end is led there.
+fn bends_beside(
+    around: &Around<'_>,
+    lines: &[Vec<Point>],
+    ends: &[End],
+) -> Vec<(usize, usize, Point)> {
+    let size = around.lengths.smallest;
+    let bent = |line: usize| {
+        lines[line]
+            .windows(3)
+            .enumerate()
+            .filter_map(move |(k, w)| {
+                let [a, b] = [0, 1].map(|i| sub(&w[i + 1], &w[i]));
+                let turn = cross(&a, &b)[2].atan2(dot(&a, &b)).abs();
+                (turn > BEND).then_some((line, k + 1, w[1]))
+            })
+    };
+    let all: Vec<(usize, usize, Point)> = (0..lines.len()).flat_map(bent).collect();
+    let boxes = Boxes::new(lines.iter().map(|line| self::around(line, JOINED * size)));
+    let [places, tips] = [
+        Boxes::new(all.iter().map(|bend| [bend.2; 2])),
+        Boxes::new(ends.iter().map(|end| [end.x; 2])),
+    ];
+    let close = |x: &Point, y: &Point| norm(&sub(x, y)) <= JOINED * size;
+    let led = |&(line, k, x): &(usize, usize, Point)| {
+        let here = self::around(&[x], JOINED * size);
+        if tips
+            .meeting(&here)
+            .into_iter()
+            .any(|end| close(&ends[end].x, &x))
+        {
+            return None;
+        }
+        let others = places
+            .meeting(&here)
+            .into_iter()
+            .filter(|&other| close(&all[other].2, &x));
+        let others: Vec<Point> = others.map(|other| all[other].2).collect();
+        if others.len() > 1 {
+            return Some((line, k, mean(&others)));
+        }
+        let near = boxes
+            .meeting(&[x; 2])
+            .into_iter()
+            .filter(|&other| other != line);
+        let feet = near.filter_map(|other| foot(&x, &lines[other]));
+        let sides = around.edges_near(&[x], JOINED * size);
+        let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+        let sides = sides.filter_map(|edge| foot(&x, &edge.map(|node| *around.at(node))));
+        let nearest = feet.chain(sides).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, to) = nearest.filter(|(away, _)| *away <= JOINED * size)?;
+        Some((line, k, to))
+    };
+    all.iter().filter_map(led).collect()
 }
 
 /// The place that several ends are joined in: where their lines cross, so that they keep their directions, or halfway.
@@ -165,7 +227,7 @@ fn common_place(group: &[End], size: f64) -> Option<Point> {
             let t = cross(&sub(&two.x, &one.x), &two.ahead)[2] / turn;
             let x = add_scaled(&one.x, t, &one.ahead);
             let near = |end: &End| norm(&sub(&x, &end.x)) <= FOLLOWED * size;
-            if turn.abs() > PARALLEL && group.iter().all(near) {
+            if group.iter().all(near) {
                 crossings.push(x);
             }
         }
