@@ -14,13 +14,13 @@ mod zone;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::arrangement::Arrangement;
-use crate::cut::crack::{Crack, Geometry};
+use crate::cut::crack::{Crack, Geometry, on_crack};
 use crate::cut::is_split;
 use crate::cut::part::{Part, Place, Region};
 use crate::cut::partition::Partition;
 use crate::cut::placement::cells_at;
 use crate::geometry::boxes::{Boxes, around};
-use crate::geometry::clip::Side;
+use crate::geometry::clip::{Side, snapped};
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::geometry::{Point, mean};
 use crate::mesh::cell::MOST_NODES;
@@ -194,6 +194,7 @@ impl Enrichment {
             let own = pieces.get(&node).and_then(|own| own.get(piece as usize));
             own.is_some_and(|places| places.binary_search(place).is_ok())
         };
+        let rounding = on_crack(self.lengths.smallest, self.lengths.rounding);
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell(cell);
             let parts: Vec<Option<&Part>> = match self.partitions.get(&cell) {
@@ -219,7 +220,7 @@ impl Enrichment {
                         FunctionKind::Branch { tip, .. } => {
                             let frame = &self.tips[tip as usize];
                             let crack = &cracks[frame.crack];
-                            let elsewhere = || beside(mesh, frame, crack, cell);
+                            let elsewhere = || beside((mesh, rounding), frame, crack, cell);
                             let jumps = &self.zones[tip as usize].arms;
                             let of_crack = |s: &&(usize, Side)| jumps.contains(&s.0);
                             let side = |part: &Option<&Part>| {
@@ -423,11 +424,11 @@ impl Enrichment {
 ///
 /// The line is that along which its functions jump: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
 /// enters.
-fn beside(mesh: &Mesh, frame: &TipFrame, crack: &Crack, cell: usize) -> Side {
+fn beside((mesh, rounding): (&Mesh, f64), frame: &TipFrame, crack: &Crack, cell: usize) -> Side {
     let map = mesh.map(cell);
     let level = |(x, &node): (&Point, &u32)| match crack.holds(node) {
         true => 0.0,
-        false => frame.coordinates(x).phi,
+        false => snapped(frame.coordinates(x).phi, rounding),
     };
     let levels: Vec<f64> = map.iter().zip(mesh.cell(cell)).map(level).collect();
     if !is_split(&levels) {

@@ -186,14 +186,11 @@ impl Crack {
         let cells = mesh.surroundings().meeting(&self.extents());
         let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
         let phi = nodes.iter().map(|node| {
+            let size = lengths.of_nodes[*node as usize];
             let distance = self.distance(&mesh.nodes[*node as usize]);
             match &on {
                 Some(on) if on.contains(node) => 0.0,
-                Some(_) => distance,
-                None => {
-                    let size = lengths.of_nodes[*node as usize];
-                    snapped(distance, on_crack(size, lengths.rounding))
-                }
+                _ => snapped(distance, on_crack(size, lengths.rounding)),
             }
         });
         let phi: Vec<f64> = phi.collect();

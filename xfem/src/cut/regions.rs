@@ -21,8 +21,8 @@ use super::partition::{BorderPiece, Partition, PartitionError};
 enum Kind {
     /// Part of a local edge of the cell, which lies to its left.
     Border(usize),
-    /// Part of an arm with its direction, side 1 to its left.
-    Face(usize, Point),
+    /// Part of an arm with the direction of that, and its side to the left.
+    Face(usize, Point, Side),
     /// Beyond the free end of an arm, whose side this is to the left.
     Beyond(usize, Side),
 }
@@ -152,12 +152,22 @@ impl Graph {
                     })
                 })
                 .collect();
-            for (w, direction) in places.windows(2).zip(&chain.directions) {
-                graph.edges.push(Edge {
-                    ends: [w[0], w[1]],
-                    kind: Kind::Face(chain.arm, *direction),
-                });
+            // From the border to a free end.
+            let back = chain.tip == [true, false];
+            let mut own: Vec<Edge> = (places.windows(2).zip(&chain.directions))
+                .map(|(w, direction)| match back {
+                    true => ([w[1], w[0]], -1.0, direction),
+                    false => ([w[0], w[1]], 1.0, direction),
+                })
+                .map(|(ends, left, direction)| Edge {
+                    ends,
+                    kind: Kind::Face(chain.arm, *direction, left),
+                })
+                .collect();
+            if back {
+                own.reverse();
             }
+            graph.edges.extend(own);
             let last = places.len() - 1;
             let directions = [
                 chain.directions[0].map(|v| -v),
@@ -241,7 +251,7 @@ impl Graph {
             self.edges.retain(|edge| {
                 let loose = edge.ends.iter().any(|&i| degree[i] < 2);
                 let kept = !loose && root(&mut parent, edge.ends[0]) == border;
-                if let (false, Kind::Face(arm, _)) = (kept, edge.kind) {
+                if let (false, Kind::Face(arm, ..)) = (kept, edge.kind) {
                     dropped.push(arm);
                 }
                 kept
@@ -290,7 +300,7 @@ impl Graph {
         const NONE: usize = usize::MAX;
         let mut ring_of = vec![NONE; 2 * self.edges.len()];
         let mut parts: Vec<Part> = Vec::new();
-        // Those on side 1 first, then those on side 2, then a cell that nothing divides.
+        // Those to the left of arms first, then those to the right, then a cell that nothing divides.
         let halves = |side: usize| (0..self.edges.len()).map(move |k| 2 * k + side);
         let is_face = |half: &usize| matches!(self.edges[half / 2].kind, Kind::Face(..));
         let is_outer =
@@ -332,11 +342,16 @@ impl Graph {
                 return Err(PartitionError::Muddle);
             }
             match edge.kind {
-                Kind::Face(arm, along) => {
+                Kind::Face(arm, along, left) => {
                     let corner = |i: usize| -> FaceCorner { (self.points[i], self.on[i]) };
+                    let (mut corners, mut regions) = (edge.ends.map(corner), regions);
+                    if left < 0.0 {
+                        corners.reverse();
+                        regions.reverse();
+                    }
                     partition.faces.push(Face {
                         crack: arm,
-                        corners: edge.ends.map(corner).to_vec(),
+                        corners: corners.to_vec(),
                         sides: regions.map(|region| (cell, region)),
                         frame: [turned(&along), along, [0.0, 0.0, 1.0]],
                     });

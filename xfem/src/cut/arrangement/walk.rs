@@ -101,10 +101,11 @@ pub(super) fn arms(net: &mut Net<'_>, cracks: &[Crack], found: &mut Arrangement)
                 _ => None,
             });
         crack.place(net.around.mesh, net.around.lengths, Some(nodes.collect()));
-        let directions: Vec<Point> = (bent.windows(2))
+        // By link: where its straight segment begins, and its direction. Places come from there, whatever lies in between.
+        let straight: Vec<[Point; 2]> = (bent.windows(2))
             .flat_map(|w| {
-                let direction = unit(&sub(&places[w[1]], &places[w[0]]));
-                std::iter::repeat_n(direction, w[1] - w[0])
+                let [from, to] = [places[w[0]], places[w[1]]];
+                std::iter::repeat_n([from, unit(&sub(&to, &from))], w[1] - w[0])
             })
             .collect();
         let ends = parted(net, line, &places, &uses);
@@ -123,7 +124,7 @@ pub(super) fn arms(net: &mut Net<'_>, cracks: &[Crack], found: &mut Arrangement)
                 near: Arc::clone(&crack.near),
                 ..crack.clone()
             };
-            let stops = stops(net, line, from..to, &directions);
+            let stops = stops(net, line, from..to, &straight);
             follow(net, arms.len(), &arm, &stops, found);
             arms.push(arm);
         }
@@ -177,32 +178,31 @@ fn stops(
     net: &mut Net<'_>,
     line: &Line,
     links: std::ops::Range<usize>,
-    directions: &[Point],
+    straight: &[[Point; 2]],
 ) -> Vec<Stop> {
     let mut stops = Vec::new();
     let end = links.end;
     for k in links {
         let [from, to] = [line.links[k], line.links[k + 1]];
         let [u, v] = [from, to].map(|link| net.vertices[link.vertex]);
-        let direction = directions[k];
+        let [origin, direction] = straight[k];
         stops.push(Stop {
             vertex: from.vertex,
             s: from.s,
             direction,
         });
-        let (tangent, length) = (unit(&sub(&v.x, &u.x)), norm(&sub(&v.x, &u.x)));
-        let normal = turned(&tangent);
+        let (normal, length) = (turned(&direction), norm(&sub(&v.x, &u.x)));
         let mut crossed: Vec<(f64, [u32; 2], Point)> = Vec::new();
         for edge in net.around.edges_near(&[u.x, v.x], 0.0) {
             if lies_on(u.on, edge) || lies_on(v.on, edge) {
                 continue;
             }
             let [p, q] = edge.map(|node| net.around.at(node));
-            let [f, g] = [p, q].map(|x| dot(&normal, &sub(x, &u.x)));
+            let [f, g] = [p, q].map(|x| dot(&normal, &sub(x, &origin)));
             let beside = |x: &Point| cross(&sub(q, p), &sub(x, p))[2];
             if f * g < 0.0 && beside(&u.x) * beside(&v.x) < 0.0 {
                 let x = crossing(p, f, q, g);
-                crossed.push((dot(&tangent, &sub(&x, &u.x)) / length, edge, x));
+                crossed.push((dot(&direction, &sub(&x, &u.x)) / length, edge, x));
             }
         }
         crossed.sort_by(|a, b| a.0.total_cmp(&b.0));
