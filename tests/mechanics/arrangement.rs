@@ -165,11 +165,14 @@ fn round_pair(x: [f64; 2]) -> [i64; 2] {
     x.map(|v| (v * 1e9).round() as i64)
 }
 
+/// Where a point goes.
+type Motion = fn(f64, f64) -> [f64; 2];
+
 /// Goal: a body mirrored, turned, its cracks renumbered and read backwards has the same graph.
 #[test]
 fn the_graph_is_that_of_the_body_however_it_is_told() {
     let mesh = mesh();
-    let moves: [(&str, fn(f64, f64) -> [f64; 2], fn(f64, f64) -> [f64; 2]); 3] = [
+    let moves: [(&str, Motion, Motion); 3] = [
         ("mirrored", |x, y| [-x, y], |x, y| [-x, y]),
         ("swapped", |x, y| [y, x], |x, y| [y, x]),
         ("turned", |x, y| [-y, x], |x, y| [y, -x]),

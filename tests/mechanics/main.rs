@@ -31,4 +31,5 @@ mod robust;
 mod skips;
 mod spaces;
 mod tips;
+mod tolerances;
 mod traction;
