@@ -123,9 +123,9 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     let error = &error.clone().moved(&case.origin);
     let (crack, allowed) = match error {
         EnrichmentError::Outside(crack) => (*crack, "a crack that cuts at least one cell"),
-        EnrichmentError::TooShort(crack) => (*crack, "a longer crack or a finer mesh"),
-        EnrichmentError::Undetermined(crack) => (*crack, "a finer mesh, or longer pieces"),
-        EnrichmentError::Loose(crack) => (*crack, "a finer mesh, or supports on the piece"),
+        EnrichmentError::TooShort(crack) => (*crack, "a longer crack"),
+        EnrichmentError::Undetermined { crack, .. } => (*crack, "longer pieces"),
+        EnrichmentError::Loose { crack, .. } => (*crack, "supports on the piece"),
         EnrichmentError::Bent(crack) | EnrichmentError::Touching(crack) => (
             *crack,
             "cracks that meet in one place, or farther apart than a thousandth of a cell",
@@ -158,11 +158,14 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     };
     let fitting = match (&spec.geometry, error) {
         (_, EnrichmentError::TooShort(_)) => fitting_cell(&spec.geometry),
+        (_, EnrichmentError::Undetermined { cell, .. } | EnrichmentError::Loose { cell, .. }) => {
+            Some(*cell)
+        }
         _ => None,
     };
     match fitting {
         Some(cell) => {
-            let allowed = format!("a longer crack, or cells of at most {cell:.2e} m");
+            let allowed = format!("{allowed}, or cells of at most {cell:.2e} m");
             case.refuse(span, &allowed, error)
         }
         None => case.refuse(span, allowed, error),

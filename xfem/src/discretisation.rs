@@ -414,13 +414,24 @@ fn loose(
 ) -> DiscretisationError {
     /// Motions are of order one.
     const OPEN: f64 = 1e-6;
+    /// As many points as tell the motions of a piece, and one more.
+    const POINTS: f64 = 4.0;
     let opened = |motion: &Vec<f64>| {
-        let mut points = surface.quadrature.iter();
-        let open = points.find(|q| norm(&q.jump(integrator, motion)) > OPEN);
-        open.map(|q| q.crack)
+        let points = surface.quadrature.iter();
+        let open = points.filter(|q| norm(&q.jump(integrator, motion)) > OPEN);
+        let open: Vec<_> = open.collect();
+        let measure: f64 = open.iter().map(|q| q.weight).sum();
+        let edge = measure.powf(1.0 / (integrator.mesh.dim() as f64 - 1.0));
+        // Those at hand do not.
+        let finer = 0.5 * integrator.enrichment.lengths.smallest;
+        open.first().map(|q| EnrichmentError::Loose {
+            crack: q.crack,
+            at: q.x,
+            cell: finer.min(edge / POINTS),
+        })
     };
     match error.motions.iter().find_map(opened) {
-        Some(crack) => EnrichmentError::Loose(crack).into(),
+        Some(loose) => loose.into(),
         None => error.into(),
     }
 }

@@ -63,8 +63,16 @@ pub(super) fn faces(
         if merged == 0 {
             let lost = rank::dependent(&arms, |_| 1.0, |k| rows(&surface, k), rank::SINGULAR);
             if let Some(&point) = lost.first() {
-                let crack = surface.points[point].crack;
-                return Err(EnrichmentError::Undetermined(crack).into());
+                let own = arms.iter().find(|arm| arm.contains(&point)).cloned();
+                let measure: f64 = own
+                    .unwrap_or_default()
+                    .map(|k| surface.points[k].weight)
+                    .sum();
+                let (crack, at) = (surface.points[point].crack, surface.points[point].x);
+                let third = measure.powf(1.0 / (dim as f64 - 1.0)) / 3.0;
+                // Those at hand do not do.
+                let cell = third.min(0.5 * lengths.smallest);
+                return Err(EnrichmentError::Undetermined { crack, at, cell }.into());
             }
             break;
         }

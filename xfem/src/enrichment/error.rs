@@ -15,11 +15,25 @@ pub enum EnrichmentError {
     #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", .0 + 1)]
     TooShort(usize),
     /// Pieces of it share all displacements: no contact force can be told from another.
-    #[error("crack {} has a piece between its bends, junctions and ends that is too short for this mesh: nothing tells the force on it from those beside it", .0 + 1)]
-    Undetermined(usize),
+    #[error("crack {} has a piece between its bends, junctions and ends, near {at:?}, that is too short for this mesh: nothing tells the force on it from those beside it", crack + 1)]
+    Undetermined {
+        /// Crack number, from 0.
+        crack: usize,
+        /// Where [m].
+        at: Point,
+        /// Edge of cells that the piece crosses often enough [m].
+        cell: f64,
+    },
     /// It cuts off a piece that can move without any of its contact points telling.
-    #[error("crack {} has too few contact points on this mesh for the piece that it cuts off: it can move freely", .0 + 1)]
-    Loose(usize),
+    #[error("crack {} has too few contact points on this mesh for the piece that it cuts off near {at:?}: it can move freely", crack + 1)]
+    Loose {
+        /// Crack number, from 0.
+        crack: usize,
+        /// A place of the crack beside the piece [m].
+        at: Point,
+        /// Edge of cells with enough points around the piece [m].
+        cell: f64,
+    },
     /// Places where it meets others that lie too close to be told apart were made one, and a piece was bent by it.
     #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", .0 + 1)]
     Bent(usize),
@@ -68,15 +82,12 @@ impl EnrichmentError {
                 ArrangementError::Overlap { at, .. } | ArrangementError::Point { at, .. },
             )
             | Self::Lost { at, .. }
+            | Self::Undetermined { at, .. }
+            | Self::Loose { at, .. }
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. }
             | Self::AlongFacet(AlongFacet { at, .. }) => *at = add_scaled(at, 1.0, by),
-            Self::Outside(_)
-            | Self::TooShort(_)
-            | Self::Undetermined(_)
-            | Self::Loose(_)
-            | Self::Bent(_)
-            | Self::Touching(_) => {}
+            Self::Outside(_) | Self::TooShort(_) | Self::Bent(_) | Self::Touching(_) => {}
         }
         self
     }
