@@ -136,9 +136,6 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::Arrangement(ArrangementError::Point { crack, .. }) => {
             (*crack, "a crack of some cells' length")
         }
-        EnrichmentError::Lost { crack, .. } => {
-            (*crack, "a mesh that the crack crosses from cell to cell")
-        }
         EnrichmentError::Partition { crack, .. } => {
             (*crack, "a finer mesh, or cracks farther apart")
         }

@@ -162,6 +162,9 @@ pub struct ProblemSize {
     /// Ends of cracks that were joined with what they nearly touch.
     #[serde(default)]
     pub joined: usize,
+    /// How far cracks were moved to what they nearly touch, at most, in shortest edges; joined ends apart.
+    #[serde(default)]
+    pub moved: f64,
     /// Whether every contact point alone has exactly one solution; absent where nobody asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unique: Option<bool>,

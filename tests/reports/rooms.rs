@@ -267,9 +267,9 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 14] = [
-    ("methods/src", 19_245), ("xfem/src", 23_715), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2325),
-    ("src/studies", 17_125), ("src/report", 10_545), ("src/cli", 2095), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
-    ("tests", 18_370),
+    ("methods/src", 19_245), ("xfem/src", 23_740), ("src/files", 2075), ("src/case", 3323), ("src/model", 3050), ("src/run", 2325),
+    ("src/studies", 17_150), ("src/report", 10_545), ("src/cli", 2095), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
+    ("tests", 18_380),
 ];
 
 /// Lines of all sources in a folder and below.

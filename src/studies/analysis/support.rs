@@ -65,6 +65,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
                 unknowns: 22,
                 uniform_stress: 0.0,
                 joined: 0,
+                moved: 0.0,
                 unique: None,
                 operator: None,
             }),

@@ -34,6 +34,12 @@ impl Answer {
             points: self.points.last().map_or(&[][..], Vec::as_slice),
             fields: self.fields.last(),
             jump: 0.0,
+            moved: self
+                .record
+                .found
+                .problem
+                .as_ref()
+                .map_or(0.0, |size| size.moved),
         };
         let jumps = ["max_gap", "max_slip"].map(|name| last.quantity(name).unwrap_or(0.0));
         let reference = step.map_or(0.0, |step| step.judge.reference_jump_m);

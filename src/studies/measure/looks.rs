@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use stickslip_methods::contact_wise_margin;
+use stickslip_xfem::geometry::{norm, sub};
 
 use super::answer::Answer;
 use super::bench::{MeasureError, Scene};
+
 use crate::model::field_mesh::{FieldStep, field_step};
 use crate::model::intensities::{OF_TIPS, intensities};
 use crate::model::quantities::{PointState, point_states, quantities};
@@ -160,6 +162,12 @@ impl Scene<'_> {
             joined: self.body().map_or(0, |(_, loading)| {
                 let moved = loading.body().moved.iter();
                 moved.filter(|moved| moved.joined).count()
+            }),
+            moved: self.body().map_or(0.0, |(_, loading)| {
+                let body = loading.body();
+                let moved = body.moved.iter().filter(|moved| !moved.joined);
+                let by = moved.map(|moved| norm(&sub(&moved.to, &moved.from)));
+                by.fold(0.0, f64::max) / body.mesh.smallest_edge()
             }),
             unique,
             operator: self.operator(),

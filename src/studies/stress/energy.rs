@@ -21,6 +21,8 @@ pub struct Found<'a> {
     pub fields: Option<&'a FieldStep>,
     /// Largest jump [m].
     pub jump: f64,
+    /// How far cracks were moved to what they nearly touch, in shortest edges.
+    pub moved: f64,
 }
 
 impl Found<'_> {

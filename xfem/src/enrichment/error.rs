@@ -43,14 +43,6 @@ pub enum EnrichmentError {
     /// Two cracks in one place, or a crack that is a point.
     #[error(transparent)]
     Arrangement(#[from] ArrangementError),
-    /// The way of a crack through the cells is lost.
-    #[error("crack {} cannot be followed from cell to cell, near {at:?}", crack + 1)]
-    Lost {
-        /// Crack number, from 0.
-        crack: usize,
-        /// Where [m].
-        at: Point,
-    },
     /// A cell cannot be divided.
     #[error("crack {}: {reason}, near {at:?}", crack + 1)]
     Partition {
@@ -81,7 +73,6 @@ impl EnrichmentError {
             Self::Arrangement(
                 ArrangementError::Overlap { at, .. } | ArrangementError::Point { at, .. },
             )
-            | Self::Lost { at, .. }
             | Self::Undetermined { at, .. }
             | Self::Loose { at, .. }
             | Self::Partition { at, .. }
