@@ -74,7 +74,7 @@ pub struct LadderRow {
     pub error: f64,
     /// Largest difference of neighbours, and from other cells, with their values; NaN where nothing is compared.
     pub apart: [(f64, f64); 2],
-    /// Steps that differ by more than [`MESH`] from other cells.
+    /// Steps that differ by more than 2 % from other cells.
     pub beyond: usize,
 }
 
