@@ -52,6 +52,8 @@ pub enum MethodError {
     NotRigid {
         /// Which mode.
         mode: usize,
+        /// Unknown with the largest part of K r.
+        unknown: usize,
         /// Relative size of K r.
         relative: f64,
     },

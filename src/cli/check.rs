@@ -44,6 +44,7 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
         for &refine in &case.sweep.refine {
             let frictions = friction_values(&case);
             let body = Body::new(&case, refine, &Needs::default()).map_err(RunError::from)?;
+            body.check_rank(&case).map_err(RunError::from)?;
             let mut lines = vec![format!(
                 "{}: {}, {} cells, {} unknowns, {} contact points ({}), uniform stress to {:.1e}{}{}",
                 file.display(),

@@ -1,5 +1,6 @@
 //! From a case to the contact system: the discretisation, then K and B over the free unknowns.
 
+use std::collections::BTreeSet;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,6 +10,7 @@ use stickslip_xfem::discretisation::{
     CrackPlan, Discretisation, Plan, Reduced, discretise, products,
 };
 use stickslip_xfem::enrichment::EnrichmentError;
+use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::material::Dilatation;
 
 use crate::case::{Case, Quadrature};
@@ -113,12 +115,8 @@ impl Body {
         let elastic = system(&discrete, reduced, needs, &traction_rows, &mut setup);
         let elastic = match elastic {
             // Pieces are found by what cracks leave whole: their motions are rigid unless a crack was bent.
-            Err(MethodError::NotRigid { .. }) if !discrete.cracks.is_empty() => {
-                let numbers = discrete.cracks.iter().map(|c| c.number);
-                let crack = numbers.max().unwrap_or(0);
-                return Err(crack_error(case, &EnrichmentError::Bent(crack)).into());
-            }
-            other => other?,
+            Err(error) => return Err(singular(case, &discrete, error)),
+            Ok(elastic) => elastic,
         };
         let loads = fixed_loads(
             case,
@@ -141,18 +139,36 @@ impl Body {
     /// Factors the stiffness.
     ///
     /// # Errors
-    /// Cracks so near each other that it is singular, at one of them. All else is for every method to tell.
+    /// The crack next to which it is singular. All else is for every method to tell.
     pub fn factorise(&self, case: &Case) -> Result<(), BodyError> {
-        let Err(MethodError::NotPositiveDefinite { unknown, .. }) = self.elastic.factorise() else {
-            return Ok(());
-        };
-        let own = |number: &Option<u32>| number.is_some_and(|n| n as usize == unknown);
-        let place = self.solver_numbers.iter().position(own);
-        let function = place.map(|i| self.enrichment.functions[i / self.mesh.dim()]);
-        let crack = function.and_then(|f| self.nearest(&self.mesh.nodes[f.node as usize]));
-        match crack.filter(|_| case.cracks.len() > 1) {
-            Some(crack) => Err(crack_error(case, &EnrichmentError::Touching(crack)).into()),
-            None => Ok(()),
+        self.definite(case, self.elastic.factorise())
+    }
+
+    /// Factors the stiffness next to the cracks, all else held: a motion that costs nothing is one of pieces that cracks leave.
+    ///
+    /// # Errors
+    /// Those of [`factorise`](Self::factorise).
+    pub fn check_rank(&self, case: &Case) -> Result<(), BodyError> {
+        let (mesh, functions) = (&self.mesh, &self.enrichment.functions);
+        let mut near = vec![false; mesh.nodes.len()];
+        let enriched = functions.iter().filter(|f| f.kind != FunctionKind::Standard);
+        enriched.for_each(|f| near[f.node as usize] = true);
+        let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
+        let nodes = cells.filter(|nodes| nodes.iter().any(|&n| near[n as usize]));
+        let nodes: BTreeSet<u32> = nodes.flatten().copied().collect();
+        let numbers = self.solver_numbers.iter().enumerate();
+        let own = numbers.filter(|(i, _)| nodes.contains(&functions[i / mesh.dim()].node));
+        let mut own: Vec<usize> = own.filter_map(|(_, n)| Some((*n)? as usize)).collect();
+        own.sort_unstable();
+        self.definite(case, self.elastic.try_part(&own))
+    }
+
+    fn definite(&self, case: &Case, factored: Result<(), MethodError>) -> Result<(), BodyError> {
+        match factored {
+            Err(error @ MethodError::NotPositiveDefinite { .. }) if !self.cracks.is_empty() => {
+                Err(singular(case, self, error))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -161,6 +177,27 @@ impl Body {
     pub fn traction(&self, all: &[f64]) -> Vec<f64> {
         products(&self.traction_rows, all)
     }
+}
+
+/// A fault of the stiffness, at the crack next to it.
+fn singular(case: &Case, discrete: &Discretisation, error: MethodError) -> BodyError {
+    let unknown = match error {
+        MethodError::NotPositiveDefinite { unknown, .. }
+        | MethodError::NotRigid { unknown, .. } => Some(unknown),
+        _ => None,
+    };
+    let own = |number: &Option<u32>| number.map(|n| n as usize) == unknown;
+    let place = unknown.and_then(|_| discrete.solver_numbers.iter().position(own));
+    let function = place.map(|i| discrete.enrichment.functions[i / discrete.mesh.dim()]);
+    let at = function.map(|f| discrete.mesh.nodes[f.node as usize]);
+    let found = at.and_then(|at| Some((discrete.nearest(&at)?, at)));
+    found.map_or_else(
+        || error.into(),
+        |(crack, at)| {
+            let cell = 0.5 * discrete.mesh.smallest_edge();
+            crack_error(case, &EnrichmentError::Singular { crack, at, cell }).into()
+        },
+    )
 }
 
 /// K, B and, where a method needs it, the traction operator over the free unknowns, with the order in which K is factored.

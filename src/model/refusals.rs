@@ -126,7 +126,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         EnrichmentError::TooShort(crack) => (*crack, "a longer crack"),
         EnrichmentError::Undetermined { crack, .. } => (*crack, "longer pieces"),
         EnrichmentError::Loose { crack, .. } => (*crack, "supports on the piece"),
-        EnrichmentError::Bent(crack) | EnrichmentError::Touching(crack) => (
+        EnrichmentError::Singular { crack, .. } => (
             *crack,
             "cracks that meet in one place, or farther apart than a thousandth of a cell",
         ),
@@ -155,9 +155,12 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     };
     let fitting = match (&spec.geometry, error) {
         (_, EnrichmentError::TooShort(_)) => fitting_cell(&spec.geometry),
-        (_, EnrichmentError::Undetermined { cell, .. } | EnrichmentError::Loose { cell, .. }) => {
-            Some(*cell)
-        }
+        (
+            _,
+            EnrichmentError::Undetermined { cell, .. }
+            | EnrichmentError::Loose { cell, .. }
+            | EnrichmentError::Singular { cell, .. },
+        ) => Some(*cell),
         _ => None,
     };
     match fitting {

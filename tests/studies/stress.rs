@@ -61,13 +61,8 @@ fn hold(findings: &[Finding]) {
 /// fault.
 #[test]
 fn random_plane_bodies_in_uniform_stress_are_solved_as_the_closed_form_says() {
-    // Open: traction 6e-9 off on a crack that was bent onto the mesh, and a floor of rounding that ends the default method.
-    const OPEN: [u64; 2] = [11, 47];
-    for (count, effort) in [(120, Effort::Default), (18, Effort::All)] {
-        let mut found = first(Family::Patch2d, count, effort);
-        found.retain(|finding| !OPEN.contains(&finding.scene.number));
-        hold(&found);
-    }
+    hold(&first(Family::Patch2d, 120, Effort::Default));
+    hold(&first(Family::Patch2d, 18, Effort::All));
 }
 
 /// As in 2D.
@@ -364,7 +359,7 @@ fn friction_goes_with_its_crack() {
 fn a_failing_scene_is_made_small_and_kept() {
     let dir = tempfile::tempdir().unwrap();
     let arguments = [
-        "stress", "--family", "patch-2d", "--scenes", "12", "--seed", "1", "--jobs", "2",
+        "stress", "--family", "patch-2d", "--scenes", "12", "--seed", "2", "--jobs", "2",
     ];
     let (_, shown, _) = stickslip(&arguments, dir.path());
     assert!(shown.contains("12 of 12 scenes"), "{shown}");

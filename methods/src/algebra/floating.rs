@@ -28,7 +28,13 @@ pub(crate) fn pins(k: &SquareMatrix, modes: &[Vec<f64>]) -> Result<Vec<usize>, M
         let relative = norm(&kr) / norm(&diag);
         // A zero mode gives NaN.
         if relative.is_nan() || relative > RIGID {
-            return Err(MethodError::NotRigid { mode, relative });
+            let part = |j: &usize| kr[*j].abs() / k.diagonal(*j).sqrt();
+            let largest = (0..n).max_by(|i, j| part(i).total_cmp(&part(j)));
+            return Err(MethodError::NotRigid {
+                mode,
+                unknown: largest.unwrap_or_default(),
+                relative,
+            });
         }
     }
     let largest = |r: &[f64]| r.iter().fold(0.0, |m: f64, v| m.max(v.abs()));

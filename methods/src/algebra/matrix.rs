@@ -157,6 +157,26 @@ impl SquareMatrix {
         Self::symmetric(self.n, ends, rows, values)
     }
 
+    /// The rows and columns of some unknowns, in their order, of a symmetric matrix.
+    ///
+    /// # Errors
+    /// None that a matrix that exists could cause.
+    pub(crate) fn part(&self, own: &[usize]) -> Result<Self, MethodError> {
+        let mut number = vec![None; self.n];
+        (own.iter().enumerate()).for_each(|(k, &i)| number[i] = Some(k));
+        let (mut ends, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for &j in own {
+            for (i, value) in self.column(j) {
+                if let Some(k) = number[i] {
+                    rows.push(k);
+                    values.push(value);
+                }
+            }
+            ends.push(values.len());
+        }
+        Self::symmetric(own.len(), ends, rows, values)
+    }
+
     /// The entry stored at (i, j); 0 where there is none.
     fn stored(&self, i: usize, j: usize) -> f64 {
         let own = self.col_ptr[j]..self.col_ptr[j + 1];

@@ -35,6 +35,11 @@ pub(crate) trait Stiffness: Send + Sync {
     /// Factors K unless that is done.
     fn factorise(&self) -> Result<(), MethodError>;
 
+    /// Factors K on some unknowns, ascending, with all others and the pins held: whether it is positive definite there.
+    fn try_part(&self, _own: &[usize]) -> Result<(), MethodError> {
+        Ok(())
+    }
+
     /// Factorisations so far, with the seconds of analysis and of numeric work.
     fn factorisations(&self) -> (usize, f64, f64);
 
@@ -156,6 +161,23 @@ impl Stiffness for SparseStiffness {
 
     fn factorise(&self) -> Result<(), MethodError> {
         self.factor().map(|_| ())
+    }
+
+    fn try_part(&self, own: &[usize]) -> Result<(), MethodError> {
+        let free = own.iter().copied().filter(|i| !self.pins.contains(i));
+        let own: Vec<usize> = free.collect();
+        let part = self.k.part(&own)?;
+        let place = |i: &usize| own.binary_search(i).ok();
+        let order: Vec<usize> = self.order.iter().filter_map(place).collect();
+        let held = Arc::new(Balance::new(&part, &[], &[]));
+        let factor = Factor::new(&part, &Analysis::new(&part, &order), Vec::new(), held);
+        factor.map(|_| ()).map_err(|error| match error {
+            MethodError::NotPositiveDefinite { unknown, .. } => MethodError::NotPositiveDefinite {
+                unknown: own[unknown],
+                size: self.k.size(),
+            },
+            other => other,
+        })
     }
 
     fn factorisations(&self) -> (usize, f64, f64) {

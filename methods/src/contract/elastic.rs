@@ -285,6 +285,14 @@ impl Elastic {
         self.stiffness.factorise()
     }
 
+    /// Factors K on some unknowns, ascending, with all others held, and keeps nothing of it: whether it is positive definite there.
+    ///
+    /// # Errors
+    /// An unknown of the body at which it is not; out of memory.
+    pub fn try_part(&self, own: &[usize]) -> Result<(), MethodError> {
+        self.stiffness.try_part(own)
+    }
+
     /// Solves K x = f in place, with iterative refinement. Where the body floats, f must balance (Rᵀ f = 0) and the
     /// solution is the one with the pinned unknowns at 0.
     ///

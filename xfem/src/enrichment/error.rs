@@ -34,12 +34,16 @@ pub enum EnrichmentError {
         /// Edge of cells with enough points around the piece [m].
         cell: f64,
     },
-    /// Places where it meets others that lie too close to be told apart were made one, and a piece was bent by it.
-    #[error("crack {} meets others in nearly one place: a piece between them has no rigid motion on this mesh", .0 + 1)]
-    Bent(usize),
-    /// The stiffness is singular to working precision next to it.
-    #[error("crack {} runs so near another that this mesh does not tell their faces apart: the stiffness is singular to working precision", .0 + 1)]
-    Touching(usize),
+    /// The stiffness is singular to working precision beyond the motions of pieces, or those are not rigid: what was made one bent it.
+    #[error("crack {} nearly touches another, or itself, near {at:?}: this mesh does not tell how what lies between them moves", crack + 1)]
+    Singular {
+        /// Crack number, from 0.
+        crack: usize,
+        /// A node there [m].
+        at: Point,
+        /// Edge of cells that may tell [m].
+        cell: f64,
+    },
     /// Two cracks in one place, or a crack that is a point.
     #[error(transparent)]
     Arrangement(#[from] ArrangementError),
@@ -75,10 +79,11 @@ impl EnrichmentError {
             )
             | Self::Undetermined { at, .. }
             | Self::Loose { at, .. }
+            | Self::Singular { at, .. }
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. }
             | Self::AlongFacet(AlongFacet { at, .. }) => *at = add_scaled(at, 1.0, by),
-            Self::Outside(_) | Self::TooShort(_) | Self::Bent(_) | Self::Touching(_) => {}
+            Self::Outside(_) | Self::TooShort(_) => {}
         }
         self
     }

@@ -109,7 +109,11 @@ fn groups(ends: &[End], size: f64) -> Vec<Vec<End>> {
     let mut parent: Vec<usize> = (0..ends.len()).collect();
     for (i, end) in ends.iter().enumerate() {
         for j in boxes.meeting(&around(&[end.x], JOINED * size)) {
-            if norm(&sub(&end.x, &ends[j].x)) <= JOINED * size && ends[j].line != end.line {
+            let close = norm(&sub(&end.x, &ends[j].x)) <= JOINED * size;
+            // What lies between two that run beside each other stays.
+            let beside =
+                dot(&end.ahead, &ends[j].ahead) > 0.0 && crossing(end, &ends[j], size).is_none();
+            if close && !beside && ends[j].line != end.line {
                 unite(&mut parent, i, j);
             }
         }
@@ -146,8 +150,16 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
         inside.then(|| add_scaled(&w[0], share, &d))
     });
     let crossing = places.min_by(|a, b| along(a).total_cmp(&along(b)));
-    // It runs beside the other.
-    crossing.or_else(|| Some(foot(&end.x, points)?.1))
+    // It passes a bend of the other; beside a straight part it ends alone.
+    let bends = points.windows(3).filter(|w| bend(w) > BEND).map(|w| w[1]);
+    let near = bends.filter(|x| along(x) <= JOINED * size);
+    crossing.or_else(|| near.min_by(|a, b| along(a).total_cmp(&along(b))))
+}
+
+/// By how much a polyline turns at the middle one of three points [rad].
+fn bend(w: &[Point]) -> f64 {
+    let [a, b] = [0, 1].map(|i| sub(&w[i + 1], &w[i]));
+    cross(&a, &b)[2].atan2(dot(&a, &b)).abs()
 }
 
 /// The point of a polyline nearest to a place, with its distance [m].
@@ -169,11 +181,7 @@ fn bends_beside(
         lines[line]
             .windows(3)
             .enumerate()
-            .filter_map(move |(k, w)| {
-                let [a, b] = [0, 1].map(|i| sub(&w[i + 1], &w[i]));
-                let turn = cross(&a, &b)[2].atan2(dot(&a, &b)).abs();
-                (turn > BEND).then_some((line, k + 1, w[1]))
-            })
+            .filter_map(move |(k, w)| (bend(w) > BEND).then_some((line, k + 1, w[1])))
     };
     let all: Vec<(usize, usize, Point)> = (0..lines.len()).flat_map(bent).collect();
     let boxes = Boxes::new(lines.iter().map(|line| self::around(line, JOINED * size)));
@@ -223,19 +231,26 @@ fn common_place(group: &[End], size: f64) -> Option<Point> {
     let mut crossings = Vec::new();
     for (i, one) in group.iter().enumerate() {
         for two in &group[..i] {
-            let turn = cross(&one.ahead, &two.ahead)[2];
-            let t = cross(&sub(&two.x, &one.x), &two.ahead)[2] / turn;
-            let x = add_scaled(&one.x, t, &one.ahead);
-            let near = |end: &End| norm(&sub(&x, &end.x)) <= FOLLOWED * size;
-            if group.iter().all(near) {
-                crossings.push(x);
-            }
+            let of_all = |x: &Point| group.iter().all(|end| is_near(end, x, size));
+            crossings.extend(crossing(one, two, size).filter(of_all));
         }
     }
     if crossings.is_empty() {
         crossings = group.iter().map(|end| end.x).collect();
     }
     Some(mean(&crossings))
+}
+
+fn is_near(end: &End, x: &Point, size: f64) -> bool {
+    norm(&sub(x, &end.x)) <= FOLLOWED * size
+}
+
+/// Where the lines of two ends cross near both.
+fn crossing(one: &End, two: &End, size: f64) -> Option<Point> {
+    let turn = cross(&one.ahead, &two.ahead)[2];
+    let t = cross(&sub(&two.x, &one.x), &two.ahead)[2] / turn;
+    let x = add_scaled(&one.x, t, &one.ahead);
+    (is_near(one, &x, size) && is_near(two, &x, size)).then_some(x)
 }
 
 /// Where an end that nearly touches a side of the body leaves it.
