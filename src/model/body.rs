@@ -151,7 +151,9 @@ impl Body {
     pub fn check_rank(&self, case: &Case) -> Result<(), BodyError> {
         let (mesh, functions) = (&self.mesh, &self.enrichment.functions);
         let mut near = vec![false; mesh.nodes.len()];
-        let enriched = functions.iter().filter(|f| f.kind != FunctionKind::Standard);
+        let enriched = functions
+            .iter()
+            .filter(|f| f.kind != FunctionKind::Standard);
         enriched.for_each(|f| near[f.node as usize] = true);
         let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
         let nodes = cells.filter(|nodes| nodes.iter().any(|&n| near[n as usize]));

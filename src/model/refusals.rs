@@ -143,10 +143,6 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
             *crack,
             "a contact space other than node-pairs, or a mesh with nodes along the crack",
         ),
-        EnrichmentError::AlongFacet(along) => (
-            along.crack,
-            "another number of cells, or a crack moved by a hundredth of a cell",
-        ),
     };
     let spec = &case.cracks[crack];
     let span = match error {

@@ -2,11 +2,11 @@
 
 pub mod arrangement;
 pub mod crack;
-pub mod off_facets;
 pub mod part;
 pub mod partition;
 pub mod placement;
 pub mod regions;
+pub mod sheets;
 pub mod solid_arms;
 
 /// True if a cell has nodes strictly on both sides of the level φ.

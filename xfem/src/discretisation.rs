@@ -13,7 +13,6 @@ use crate::contact::surface_point::SurfacePoint;
 use crate::contact::{ContactSpace, conforming, facet_samples, traction};
 use crate::cut::arrangement::{Arrangement, Moved};
 use crate::cut::crack::{Crack, Tip};
-use crate::cut::off_facets::off_facets;
 use crate::cut::solid_arms::solid_arms;
 use crate::enrichment::pieces::{MotionError, free_motions};
 use crate::enrichment::{Enrichment, EnrichmentError};
@@ -331,19 +330,14 @@ struct Placed {
 /// The arms of the cracks, and the surface of one that splits the mesh along its facets, if that was asked for.
 fn place_cracks(plan: &[CrackPlan<'_>], mesh: &mut Mesh) -> Result<Placed, EnrichmentError> {
     let lengths = mesh.lengths();
-    let shapes: Vec<_> = plan.iter().map(|crack| (crack.shape, crack.tip)).collect();
     let pairs = |crack: &CrackPlan<'_>| crack.contact == ContactSpace::NodePairs;
     let pairs = plan.iter().any(pairs);
-    let whole = if mesh.dim() == 3 && !pairs {
-        off_facets(mesh, &lengths, &shapes)?
-    } else {
-        let shapes = shapes.into_iter().enumerate();
-        let new = |(k, (shape, tip))| Crack::new(k, shape, tip, mesh, &lengths);
-        shapes.map(new).collect()
-    };
+    let own = plan.iter().enumerate();
+    let new = |(k, own): (usize, &CrackPlan<'_>)| Crack::new(k, own.shape, own.tip, mesh, &lengths);
+    let whole: Vec<Crack> = own.map(new).collect();
     let (mut arrangement, mut cracks) = match mesh.dim() {
         2 => Arrangement::new(mesh, &lengths, &whole)?,
-        _ => (Arrangement::default(), solid_arms(&whole, mesh)),
+        _ => solid_arms(&whole, mesh, &lengths),
     };
     let moved = std::mem::take(&mut arrangement.moved);
     let doubled = match pairs {

@@ -76,6 +76,8 @@ pub struct Enrichment {
     pub lengths: Lengths,
     /// Divided cells with faces of a crack, by crack.
     cut_by: Vec<Vec<usize>>,
+    /// By cell on side 2 of faces between two cells: those on side 1, which have the faces.
+    hosts: BTreeMap<usize, BTreeSet<usize>>,
     standard: usize,
 }
 
@@ -93,7 +95,7 @@ impl Enrichment {
     ) -> Result<Self, EnrichmentError> {
         let tips = match mesh.dim() {
             2 => Tips::flat(mesh, lengths, cracks, &arrangement)?,
-            _ => Tips::solid(mesh, cracks),
+            _ => Tips::solid(mesh, cracks)?,
         };
         let divided = tips.partitions.values().chain(tips.endings.values());
         let faces = divided.flat_map(|p| &p.faces);
@@ -111,6 +113,13 @@ impl Enrichment {
         for (&cell, partition) in &tips.partitions {
             let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
             own.into_iter().for_each(|crack| cut_by[crack].push(cell));
+        }
+        let mut hosts: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for face in tips.partitions.values().flat_map(|p| &p.faces) {
+            let [one, two] = face.sides.map(|side| side.0);
+            if one != two {
+                hosts.entry(two).or_default().insert(one);
+            }
         }
         let pieces = support_pieces(mesh, cracks, &arrangement, &tips, beside);
         let standard = mesh.nodes.len();
@@ -181,6 +190,7 @@ impl Enrichment {
             on_crack: cracks.iter().flat_map(Crack::nodes_on).copied().collect(),
             lengths: lengths.clone(),
             cut_by,
+            hosts,
             standard,
         };
         enrichment.index_cells(mesh, cracks, &pieces);
@@ -278,6 +288,12 @@ impl Enrichment {
     /// Divided cells with faces of a crack, in order.
     pub fn cut_by(&self, crack: usize) -> &[usize] {
         &self.cut_by[crack]
+    }
+
+    /// Cells that have the faces beside a cell: itself, and others on side 1 of those between two.
+    pub fn hosts(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let others = self.hosts.get(&cell).into_iter().flatten().copied();
+        std::iter::once(cell).chain(others)
     }
 
     /// Number of regions of a cell.

@@ -11,8 +11,8 @@
 //! that no displacement determines: at tips and junctions, on slivers, beside supports, on cracks of few cells. Forces of
 //! many points that nothing resists together (constant ones that change sign from facet to facet around a circle) leave no
 //! small pivot but a small eigenvalue; the point that has most of it is such a point too. It is merged with the nearest point
-//! of its arm (one on next to nothing with any): their multiplier functions add up, so constant tractions stay exact. One rule, from what the rows are, not
-//! from where they come from.
+//! of its arm: their multiplier functions add up, so constant tractions stay exact. One rule, from what the rows are, not from where
+//! they come from.
 
 use std::collections::BTreeMap;
 
@@ -37,11 +37,7 @@ pub const SINGULAR: [f64; 2] = [1e-10; 2];
 const WEAK: f64 = 1e-9;
 
 /// Areas below this, in facets of the smallest cell, carry no force of their own.
-pub const HAIR: f64 = 1e-6;
-
-/// Areas below this belong to whatever is next to them: cracks that were moved off facets, by at most half of this, leave such
-/// arms.
-pub const NOTHING: f64 = 5e-9;
+pub const HAIR: f64 = 1e-3;
 
 /// A row of B over the unknowns of the solver, each divided by the root of its stiffness.
 type Row = Vec<(usize, f64)>;
@@ -314,7 +310,6 @@ pub fn merge(
     surface: &mut ContactSurface,
     arms: &[std::ops::Range<usize>],
     lost: &[usize],
-    anywhere: bool,
 ) -> (Vec<std::ops::Range<usize>>, usize) {
     let count = surface.points.len();
     let mut target: Vec<usize> = (0..count).collect();
@@ -323,12 +318,10 @@ pub fn merge(
     let own = arms
         .iter()
         .filter(|arm| !stays[(*arm).clone()].iter().all(|s| *s));
-    let all = anywhere.then(|| Others::new(surface, arms.iter().flat_map(Clone::clone), &stays));
     for arm in own {
         let beside = Others::new(surface, arm.clone(), &stays);
         for k in arm.clone().filter(|&k| !stays[k]) {
-            let nearest = beside.nearest(k).or_else(|| all.as_ref()?.nearest(k));
-            target[k] = nearest.unwrap_or(k);
+            target[k] = beside.nearest(k).unwrap_or(k);
         }
     }
     let kept: Vec<usize> = (0..count).filter(|&k| target[k] == k).collect();

@@ -22,6 +22,8 @@ use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::cell::{CellMap, Nodal};
 use crate::mesh::{Lengths, Mesh};
 
+use super::arrangement::DELTA;
+
 /// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
 ///
 /// Above rounding of coordinates (1e-16 of the body, about 1e-14 h). The crack is bent by so much at the node, and the contact
@@ -125,6 +127,8 @@ pub(super) struct LevelSet {
     phi: Vec<f64>,
     /// Nodes on it, ascending.
     on: Vec<u32>,
+    /// Of a solid: what lies this near to it is on it [m].
+    slack: f64,
 }
 
 impl Crack {
@@ -181,16 +185,18 @@ impl Crack {
         crack
     }
 
-    /// Finds the mesh next to it. `on`: nodes on it; otherwise those closer to its curve or plane than [`ON_CRACK`].
+    /// Finds the mesh next to it. `on`: nodes on it; otherwise those closer to its curve or plane than [`DELTA`].
     pub(super) fn place(&mut self, mesh: &Mesh, lengths: &Lengths, on: Option<BTreeSet<u32>>) {
         let cells = mesh.surroundings().meeting(&self.extents());
         let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
+        let slack = (DELTA * lengths.smallest).max(lengths.rounding);
         let phi = nodes.iter().map(|node| {
             let size = lengths.of_nodes[*node as usize];
             let distance = self.distance(&mesh.nodes[*node as usize]);
             match &on {
                 Some(on) if on.contains(node) => 0.0,
-                _ => snapped(distance, on_crack(size, lengths.rounding)),
+                Some(_) => snapped(distance, on_crack(size, lengths.rounding)),
+                None => snapped(distance, slack),
             }
         });
         let phi: Vec<f64> = phi.collect();
@@ -206,6 +212,7 @@ impl Crack {
             nodes,
             phi,
             on,
+            slack,
         });
     }
 
@@ -252,6 +259,19 @@ impl Crack {
             Geometry::Curve(curve) => curve.nearest(x).phi,
             Geometry::Plane { origin, frame } => dot(&frame[0], &sub(x, origin)),
             Geometry::Ellipse(e) => dot(&e.normal, &sub(x, &e.centre)),
+        }
+    }
+
+    /// φ of a place of a solid: 0 or at least [`DELTA`] of the smallest edge, the same for all cells [m].
+    pub fn level(&self, x: &Point) -> f64 {
+        snapped(self.distance(x), self.near.slack)
+    }
+
+    /// ψ of a place of a solid likewise, of a plane without a front −∞ [m].
+    pub fn beyond(&self, x: &Point) -> f64 {
+        match &self.geometry {
+            Geometry::Ellipse(e) => snapped(e.nearest(x).psi, self.near.slack),
+            _ => f64::NEG_INFINITY,
         }
     }
 

@@ -8,7 +8,7 @@
 //! In 2D parts are simple polygons cut along chains of segments ([`super::flat`]); in 3D tetrahedra clipped by planes, crack
 //! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
-use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing, rounding, snapped};
+use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing};
 use crate::geometry::{Point, cross, dot, mean, norm, sub};
 use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
@@ -110,12 +110,7 @@ impl Partition {
     fn divide_solid(&mut self, index: usize, cracks: &[Crack], mesh: &Mesh, cell: usize) {
         let crack = &cracks[index];
         let (map, phi) = (mesh.map(cell), crack.cell_phi(mesh, cell));
-        let level = |x: &Point| {
-            // The nodes' own values, so that a node on the crack stays on it.
-            let node = map.iter().position(|c| c == x);
-            node.map_or_else(|| crack.distance(x), |i| phi[i])
-        };
-        let small = (1e-14 * map.diagonal()).max(rounding(map.iter()));
+        let level = |x: &Point| crack.level(x);
         let mut halves: Vec<Option<usize>> = vec![None; self.parts.len()];
         for host in 0..self.parts.len() {
             if !lives(crack, &self.parts[host]) {
@@ -123,7 +118,7 @@ impl Partition {
             }
             let mut sides = [Vec::new(), Vec::new()];
             for t in &self.parts[host].tetrahedra {
-                let values = t.map(|x| snapped(level(&x), small));
+                let values = t.map(|x| level(&x));
                 for (part, side) in sides.iter_mut().zip([1.0, -1.0]) {
                     clip_tetrahedron(t, &values, side, part);
                 }
@@ -169,7 +164,7 @@ impl Partition {
             let Some(lower) = *half else { continue };
             let mut polygon = facet.clone();
             for &(other, side) in self.parts[host].sides.iter().filter(|s| s.0 != index) {
-                polygon = clip_face(&polygon, |x| cracks[other].distance(x), side);
+                polygon = clip_face(&polygon, |x| cracks[other].level(x), side);
             }
             if polygon.len() > 2 {
                 faces.push(Face {
@@ -185,18 +180,18 @@ impl Partition {
 }
 
 /// Whether a crack reaches into a part, or ends on another one before.
-fn lives(crack: &Crack, part: &Part) -> bool {
+pub fn lives(crack: &Crack, part: &Part) -> bool {
     let mut parents = crack.parents.iter();
     parents.all(|p| part.side(p.crack).is_none_or(|s| s == p.side))
 }
 
 /// Convex polygon of face corners on one side of a level.
-fn clip_face(corners: &[FaceCorner], level: impl Fn(&Point) -> f64, side: Side) -> Vec<FaceCorner> {
-    let from_first = corners.iter().map(|c| norm(&sub(&c.0, &corners[0].0)));
-    let size = from_first.fold(0.0, f64::max);
-    let small = (1e-13 * size).max(rounding(corners.iter().map(|c| &c.0)));
-    let levels = corners.iter().map(|c| snapped(level(&c.0), small));
-    let levels: Vec<f64> = levels.collect();
+pub fn clip_face(
+    corners: &[FaceCorner],
+    level: impl Fn(&Point) -> f64,
+    side: Side,
+) -> Vec<FaceCorner> {
+    let levels: Vec<f64> = corners.iter().map(|c| level(&c.0)).collect();
     if !levels.iter().any(|v| v * side > 0.0) {
         return Vec::new();
     }

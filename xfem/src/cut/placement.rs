@@ -28,15 +28,15 @@ pub fn along(mesh: &Mesh, crack: &Crack, cell: usize) -> Along {
     if !is_split(&phi) {
         return Along::Away;
     }
-    let Geometry::Ellipse(ellipse) = &crack.geometry else {
-        return Along::Through;
-    };
-    let map = mesh.map(cell);
-    let tolerance = ON_EDGE * map.diagonal();
-    let crossings = crossings(&map, &phi).into_iter();
-    let psi: Vec<f64> = crossings.map(|(x, _)| ellipse.nearest(&x).psi).collect();
-    match psi.iter().filter(|psi| **psi <= tolerance).count() {
-        _ if psi.iter().all(|psi| *psi >= -tolerance) => Along::Away,
+    let crossings = crossings(&mesh.map(cell), &phi);
+    along_places(crack, crossings.iter().map(|crossing| &crossing.0))
+}
+
+/// Where the polygon between some places of its plane lies along a crack.
+pub fn along_places<'a>(crack: &Crack, places: impl Iterator<Item = &'a Point>) -> Along {
+    let psi: Vec<f64> = places.map(|x| crack.beyond(x)).collect();
+    match psi.iter().filter(|psi| **psi <= 0.0).count() {
+        _ if psi.iter().all(|psi| *psi >= 0.0) => Along::Away,
         inside if inside == psi.len() => Along::Through,
         _ => Along::Ends,
     }

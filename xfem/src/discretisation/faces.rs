@@ -48,17 +48,15 @@ pub(super) fn faces(
         rows.iter().map(|row| scaled(row)).collect()
     };
     let size = lengths.smallest.powi(dim as i32 - 1);
-    for (least, anywhere) in [(rank::HAIR, false), (rank::NOTHING, true)] {
-        let hairs = rank::hairs(&surface, &arms, least * size);
-        arms = rank::merge(&mut surface, &arms, &hairs, anywhere).0;
-    }
+    let hairs = rank::hairs(&surface, &arms, rank::HAIR * size);
+    arms = rank::merge(&mut surface, &arms, &hairs).0;
     loop {
         let weight = |k: usize| surface.points[k].weight;
         let lost = rank::dependent(&arms, weight, |k| rows(&surface, k), rank::UNTOLD);
         if lost.is_empty() {
             break;
         }
-        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost, false);
+        let (fewer, merged) = rank::merge(&mut surface, &arms, &lost);
         arms = fewer;
         if merged == 0 {
             let lost = rank::dependent(&arms, |_| 1.0, |k| rows(&surface, k), rank::SINGULAR);

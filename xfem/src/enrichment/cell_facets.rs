@@ -3,9 +3,9 @@
 use crate::cut::crack::Crack;
 use crate::cut::part::{Part, Region};
 use crate::cut::partition::Partition;
-use crate::geometry::clip::{Side, clip, rounding, snapped};
+use crate::geometry::clip::{Side, clip};
 use crate::geometry::polygon::{border_distance, contains};
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::geometry::{Point, add_scaled, dot, sub};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -32,41 +32,33 @@ pub fn pieces(
             _ => edge_pieces(cracks, partition, &vertices, [i, j]),
         };
     }
-    let nodes: Vec<u32> = local.iter().map(|&i| mesh.cell(cell)[i]).collect();
     let parts = partition.parts.iter().enumerate();
     let pieces = parts.map(|(region, part)| {
-        let polygon = clipped(mesh, cracks, &nodes, part, vertices.clone());
+        let polygon = clipped(cracks, part, vertices.clone());
         (polygon, region)
     });
     pieces.filter(|(polygon, _)| polygon.len() > 2).collect()
 }
 
-/// The part of a polygon in the face between some nodes that lies on the sides of a part of a cell.
-pub fn clipped(
-    mesh: &Mesh,
-    cracks: &[Crack],
-    nodes: &[u32],
-    part: &Part,
-    mut polygon: Vec<Point>,
-) -> Vec<Point> {
-    let at = |node: u32| &mesh.nodes[node as usize];
-    let size = norm(&sub(at(nodes[2]), at(nodes[0])));
-    let small = (1e-14 * size).max(rounding(nodes.iter().map(|&n| at(n))));
+/// The part of a polygon in a face that lies on the sides of a part of a cell; cracks along the face leave all of it.
+pub fn clipped(cracks: &[Crack], part: &Part, mut polygon: Vec<Point>) -> Vec<Point> {
     for &(crack, side) in &part.sides {
-        let crack = &cracks[crack];
-        // The nodes' own values, so that a node on the crack stays on it.
-        let level = |x: &Point| {
-            let node = nodes.iter().find(|&&n| at(n) == x);
-            let value = node.map_or_else(|| crack.distance(x), |&n| crack.phi(mesh, n));
-            snapped(value, small)
-        };
-        let levels: Vec<f64> = polygon.iter().map(level).collect();
+        let levels: Vec<f64> = polygon.iter().map(|x| cracks[crack].level(x)).collect();
+        if levels.iter().all(|level| *level == 0.0) {
+            continue;
+        }
         if !levels.iter().any(|v| v * side > 0.0) {
             return Vec::new();
         }
         polygon = clip(&polygon, &levels, side);
     }
     polygon
+}
+
+/// Whether a part of a cell is beside a crack along a face.
+pub fn parted(cracks: &[Crack], part: &Part, face: &[Point]) -> bool {
+    let along = |crack: &Crack| face.iter().all(|x| crack.level(x) == 0.0);
+    part.sides.iter().any(|side| along(&cracks[side.0]))
 }
 
 /// An edge of a 2D cell, cut where arms end on it or cross it.

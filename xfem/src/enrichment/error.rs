@@ -1,7 +1,6 @@
 //! Cracks that a mesh cannot carry.
 
 use crate::cut::arrangement::ArrangementError;
-use crate::cut::off_facets::AlongFacet;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
 
@@ -65,9 +64,6 @@ pub enum EnrichmentError {
         /// Where it runs through a cell, or ends [m].
         at: Point,
     },
-    /// It runs along a facet wherever it is moved by next to nothing.
-    #[error(transparent)]
-    AlongFacet(#[from] AlongFacet),
 }
 
 impl EnrichmentError {
@@ -81,8 +77,7 @@ impl EnrichmentError {
             | Self::Loose { at, .. }
             | Self::Singular { at, .. }
             | Self::Partition { at, .. }
-            | Self::OffFacets { at, .. }
-            | Self::AlongFacet(AlongFacet { at, .. }) => *at = add_scaled(at, 1.0, by),
+            | Self::OffFacets { at, .. } => *at = add_scaled(at, 1.0, by),
             Self::Outside(_) | Self::TooShort(_) => {}
         }
         self

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::cut::crack::{Crack, Geometry};
 use crate::cut::part::{FaceCorner, Place};
 use crate::geometry::boxes::{Boxes, around};
-use crate::geometry::clip::{bent_crossing, clip_with, snapped};
+use crate::geometry::clip::{bent_crossing, clip_with};
 use crate::geometry::polygon::space_area;
 use crate::geometry::{Point, add_scaled, norm, sub};
 use crate::mesh::Mesh;
@@ -102,7 +102,7 @@ impl CrackFacets {
                     sides: face.sides,
                 };
                 let polygon: Vec<Corner> = face.corners.iter().map(corner).collect();
-                Some((face, within(crack, &polygon, tolerance)?))
+                Some((face, within(crack, &polygon)?))
             });
             let pieces: Vec<_> = pieces.collect();
             // Corners inside the cell that its own faces share: the first of those in one place stands for all.
@@ -181,12 +181,10 @@ impl CrackFacets {
 type Clipped = (Vec<Corner>, Option<FrontCut>);
 
 /// The part of a face inside a 3D front; its new corners are points of the front.
-fn within(crack: &Crack, polygon: &[Corner], tolerance: f64) -> Option<Clipped> {
+fn within(crack: &Crack, polygon: &[Corner]) -> Option<Clipped> {
     match &crack.geometry {
         Geometry::Plane { .. } => Some((polygon.to_vec(), None)),
-        Geometry::Ellipse(ellipse) => {
-            inside_front(polygon, |x| snapped(ellipse.nearest(x).psi, tolerance))
-        }
+        Geometry::Ellipse(_) => inside_front(polygon, |x| crack.beyond(x)),
         // Traced up to its ends.
         Geometry::Curve(_) => Some((polygon.to_vec(), None)),
     }

@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 use crate::quadrature::measure;
 
-use super::cell_facets::clipped;
+use super::cell_facets::{clipped, parted};
 use super::tips::Tips;
 
 /// A node's own piece no region of which is larger than this part of a cell is no longer its own: the largest piece is.
@@ -219,10 +219,14 @@ impl Joiner<'_> {
         let face: Vec<Point> = corners.iter().map(at).collect();
         let whole = space_area(&face);
         let mut joins = Vec::new();
-        for one in 0..self.regions(cells[0]) {
-            let own = self.clipped(&corners, face.clone(), (cells[0], one));
+        let beside = |(cell, region): Place| {
+            let own = self.partitions.get(&cell);
+            own.is_some_and(|own| parted(self.cracks, &own.parts[region], &face))
+        };
+        for one in (0..self.regions(cells[0])).filter(|&one| !beside((cells[0], one))) {
+            let own = self.clipped(face.clone(), (cells[0], one));
             for two in 0..self.regions(cells[1]) {
-                let both = self.clipped(&corners, own.clone(), (cells[1], two));
+                let both = self.clipped(own.clone(), (cells[1], two));
                 // Rounding leaves less.
                 if space_area(&both) > 1e-26 * whole {
                     joins.push([(cells[0], one), (cells[1], two)]);
@@ -233,12 +237,12 @@ impl Joiner<'_> {
     }
 
     /// The part of a polygon in a face that lies on the sides of a region.
-    fn clipped(&self, nodes: &[u32], polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
+    fn clipped(&self, polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
         match self.partitions.get(&cell) {
             None => polygon,
             Some(partition) => {
                 let part = &partition.parts[region];
-                clipped(self.mesh, self.cracks, nodes, part, polygon)
+                clipped(self.cracks, part, polygon)
             }
         }
     }

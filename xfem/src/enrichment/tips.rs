@@ -16,12 +16,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use self::corners::Corner;
-use crate::cut::arrangement::{Arrangement, Chain};
+use crate::cut::arrangement::{Arrangement, ArrangementError, Chain};
 use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::part::Face;
 use crate::cut::partition::{BorderPiece, Partition};
-use crate::cut::placement::{self, front_frame};
+use crate::cut::placement::{self, Along, front_frame};
 use crate::cut::regions;
+use crate::cut::sheets::{Sheet, add_faces, overlap, sheets};
+use crate::cut::solid_arms::reaches;
 use crate::geometry::boxes::Boxes;
 use crate::geometry::curve::turned;
 use crate::geometry::segments::Segments;
@@ -155,15 +157,30 @@ impl Tips {
     }
 
     /// Divides the cells of a solid.
-    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Self {
+    ///
+    /// # Errors
+    /// Two cracks in one place.
+    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Result<Self, ArrangementError> {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let arms_of = arms.iter().enumerate();
+        let sheets: Vec<Sheet> = arms_of
+            .flat_map(|(index, crack)| sheets(mesh, index, crack))
+            .filter(|sheet| reaches(mesh, arms, &arms[sheet.arm], sheet.cells[0]))
+            .collect();
+        let through = |sheet: &&Sheet| sheet.along == Along::Through;
+        for sheet in sheets.iter().filter(through) {
+            for cell in sheet.cells {
+                inside.entry(cell).or_default().push(sheet.arm);
+            }
+        }
         for (index, crack) in arms.iter().enumerate() {
-            for &cell in crack.cells() {
+            let cells = crack.cells().iter().copied();
+            for cell in cells.filter(|&cell| reaches(mesh, arms, crack, cell)) {
                 let list = match placement::along(mesh, crack, cell) {
-                    placement::Along::Through => &mut inside,
-                    placement::Along::Ends => &mut ending,
-                    placement::Along::Away => continue,
+                    Along::Through => &mut inside,
+                    Along::Ends => &mut ending,
+                    Along::Away => continue,
                 };
                 list.entry(cell).or_default().push(index);
             }
@@ -171,14 +188,18 @@ impl Tips {
         let mut tips = Tips::default();
         // All arms of an ellipse have one front.
         let mut fronts: BTreeMap<usize, (usize, BTreeSet<usize>)> = BTreeMap::new();
-        for (&cell, own) in &ending {
-            for &index in own.iter().filter(|&&i| arms[i].tip != Tip::None) {
-                let front = fronts.entry(arms[index].number);
-                front
-                    .or_insert_with(|| (index, BTreeSet::new()))
-                    .1
-                    .insert(cell);
-            }
+        let within = ending
+            .iter()
+            .flat_map(|(&cell, own)| own.iter().map(move |&i| (i, cell)));
+        let ends = sheets.iter().filter(|sheet| sheet.along == Along::Ends);
+        let beside = ends.flat_map(|sheet| sheet.cells.map(|cell| (sheet.arm, cell)));
+        for (index, cell) in within
+            .chain(beside)
+            .filter(|(i, _)| arms[*i].tip != Tip::None)
+        {
+            let front = fronts.entry(arms[index].number);
+            let own = front.or_insert_with(|| (index, BTreeSet::new()));
+            own.1.insert(cell);
         }
         for (&cell, own) in &ending {
             let (with, without): (Vec<usize>, Vec<usize>) =
@@ -196,10 +217,17 @@ impl Tips {
         }
         for (cell, mut own) in inside {
             own.sort_unstable();
+            if let Some(cracks) = overlap(mesh, arms, cell, &own) {
+                let at = mesh.centre(cell);
+                return Err(ArrangementError::Overlap { cracks, at });
+            }
             let ends = ending.get(&cell).map_or(&[][..], Vec::as_slice);
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
         }
+        let kept = |sheet: &&Sheet| through(sheet) || arms[sheet.arm].tip != Tip::None;
+        let kept: Vec<&Sheet> = sheets.iter().filter(kept).collect();
+        add_faces(mesh, arms, &kept, &mut tips.partitions);
         let mut near = None;
         for (index, cells) in fronts.into_values() {
             let Some(frame) = front_frame(index, &arms[index]) else {
@@ -232,7 +260,7 @@ impl Tips {
             tips.add(frame, &cells, zone);
         }
         tips.cells.sort_unstable();
-        tips
+        Ok(tips)
     }
 
     /// Adds the branch functions of a tip or front with the given cells around it.

@@ -16,7 +16,7 @@ use crate::cut::part::{Part, Region};
 use crate::cut::partition::Partition;
 use crate::enrichment::Enrichment;
 use crate::enrichment::cell_functions::CellFunctions;
-use crate::enrichment::facets::CrackFacets;
+use crate::enrichment::facets::{CrackFacets, Facet};
 use crate::geometry::clip::Side;
 use crate::geometry::{Point, cross, norm, polygon, sub};
 use crate::material::{Dilatation, Lame};
@@ -261,9 +261,12 @@ impl<'a> CellIntegrator<'a> {
         let chord = |&(_, tip): &(usize, usize)| {
             let index = self.enrichment.tips[tip].crack;
             let crack = &self.cracks[index];
-            let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
-            let mut cuts = facets.facets.iter().filter_map(|f| f.front.as_ref());
-            cuts.next().map(|cut| (tip, cut.chord))
+            self.enrichment.hosts(cell).find_map(|host| {
+                let all = CrackFacets::of_cell(self.mesh, host, index, crack, self.enrichment);
+                let beside = |facet: &&Facet| facet.sides.iter().any(|side| side.0 == cell);
+                let mut own = all.facets.iter().filter(beside);
+                own.find_map(|facet| Some((tip, facet.front.as_ref()?.chord)))
+            })
         };
         self.tips_in(cell).iter().filter_map(chord).collect()
     }

@@ -21,7 +21,7 @@ use crate::enrichment::cell_facets::pieces;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facet_rule::facet_points;
 use crate::enrichment::facets::CrackFacets;
-use crate::geometry::clip::{clip, fan};
+use crate::geometry::clip::{bent_crossing, clip, clip_with, fan};
 use crate::geometry::curve::turned;
 use crate::geometry::{Point, Points, add_scaled, cross, dot, norm, sub, unit};
 use crate::mesh::cell::CellMap;
@@ -457,6 +457,9 @@ impl CellIntegrator<'_> {
         let phi = crack.cell_phi(self.mesh, cell);
         let levels: Vec<f64> = order.iter().map(|&i| phi[i]).collect();
         let face: Vec<Point> = order.iter().map(|&i| map[i]).collect();
+        if levels.iter().all(|level| *level == 0.0) {
+            return self.sheet_points(cell, &face, tip);
+        }
         let mut points = Vec::new();
         for side in [1.0, -1.0] {
             if !levels.iter().any(|f| f * side > 0.0) {
@@ -474,6 +477,43 @@ impl CellIntegrator<'_> {
                 let rule = graded_triangles(&[t], distance, BRANCH_FACE, FACE_DEPTH).into_iter();
                 points.extend(rule.map(|p| (p, region.unwrap_or(0))));
             }
+        }
+        points
+    }
+
+    /// On a face along the plane of the tip's crack: those of the jump up to the front, and others beyond, for both cells the same.
+    fn sheet_points(
+        &self,
+        cell: usize,
+        face: &[Point],
+        tip: usize,
+    ) -> Vec<(WeightedPoint, Region)> {
+        let crack = &self.cracks[self.enrichment.tips[tip].crack];
+        let mut points = Vec::new();
+        for host in self.enrichment.hosts(cell) {
+            for &arm in &self.enrichment.zones[tip].arms {
+                let crack = &self.cracks[arm];
+                let facets = CrackFacets::of_cell(self.mesh, host, arm, crack, self.enrichment);
+                for facet in &facets.facets {
+                    let [one, two] = facet.sides;
+                    let beside = [one, two].into_iter().find(|side| side.0 == cell);
+                    if let Some((_, own)) = beside.filter(|_| one.0 != two.0) {
+                        let rule = facet_points(self.mesh, crack, self.enrichment, &facets, facet);
+                        let rule = rule.into_iter().map(|p| WeightedPoint::new(p.x, p.weight));
+                        points.extend(rule.map(|p| (p, own)));
+                    }
+                }
+            }
+        }
+        let beyond: Vec<f64> = face.iter().map(|x| crack.beyond(x)).collect();
+        let front = &self.enrichment.tips[tip];
+        let distance = |x: &Point| front.distance(x);
+        for t in fan(&clip_with(face, &beyond, 1.0, |i, j| {
+            bent_crossing(&face[i], beyond[i], &face[j], |x| crack.beyond(x))
+        })) {
+            let rule = graded_triangles(&[t], distance, BRANCH_FACE, FACE_DEPTH).into_iter();
+            let ahead = rule.filter(|p| front.coordinates(&p.x).psi >= 0.0);
+            points.extend(ahead.map(|p| (p, 0)));
         }
         points
     }
