@@ -139,6 +139,17 @@ pub struct Found {
     pub change: Option<Change>,
 }
 
+/// A point of a crack that was joined with what it nearly touches.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Joined {
+    /// Number of the crack, from 0.
+    pub crack: usize,
+    /// Where it was put [m].
+    pub from: [f64; 3],
+    /// Where it is [m].
+    pub to: [f64; 3],
+}
+
 /// Size of a discrete problem.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProblemSize {
@@ -159,9 +170,9 @@ pub struct ProblemSize {
     /// Residual of uniform stress states on the mesh, found by its judge [-].
     #[serde(default = "nan::nothing", with = "nan")]
     pub uniform_stress: f64,
-    /// Ends of cracks that were joined with what they nearly touch.
+    /// Ends and bends of cracks that were joined with what they nearly touch.
     #[serde(default)]
-    pub joined: usize,
+    pub joined: Vec<Joined>,
     /// How far cracks were moved to what they nearly touch, at most, in shortest edges; joined ends apart.
     #[serde(default)]
     pub moved: f64,

@@ -23,8 +23,8 @@ const FAULTS: &[Fault] = &[
     Fault {
         name: "sign of a face in the jump",
         file: "xfem/src/contact/surface_point.rs",
-        from: ".map(|(&f, (one, two))| (f, one - two))",
-        to: ".map(|(&f, (one, two))| (f, one + two))",
+        from: "*jumps.entry(f).or_default() -= value;",
+        to: "*jumps.entry(f).or_default() += value;",
         causes: MESH,
     },
     Fault {
@@ -37,8 +37,8 @@ const FAULTS: &[Fault] = &[
     Fault {
         name: "size of a pressure",
         file: "src/model/nodal_forces.rs",
-        from: "n.map(|v| -pressure.at(x) * v)",
-        to: "n.map(|v| -1.0001 * pressure.at(x) * v)",
+        from: "at.normal.map(|n| -pressure.at(at.x) * n)",
+        to: "at.normal.map(|n| -1.0001 * pressure.at(at.x) * n)",
         causes: &["wrong patch"],
     },
     Fault {
@@ -54,10 +54,10 @@ const FAULTS: &[Fault] = &[
         ],
     },
     Fault {
-        name: "tolerance for nodes on a crack",
-        file: "xfem/src/cut/crack.rs",
-        from: "pub const ON_CRACK: f64 = 1e-12;",
-        to: "pub const ON_CRACK: f64 = 1e-2;",
+        name: "distance at which places are one",
+        file: "xfem/src/cut/arrangement.rs",
+        from: "pub const DELTA: f64 = 1e-6;",
+        to: "pub const DELTA: f64 = 1e-1;",
         causes: &["suspect mesh", "wrong patch", "refused"],
     },
     Fault {
@@ -69,9 +69,9 @@ const FAULTS: &[Fault] = &[
     },
     Fault {
         name: "angle at the tip",
-        file: "xfem/src/geometry/tip_frame.rs",
-        from: "let theta = phi.atan2(psi);",
-        to: "let theta = phi.atan2(psi).abs();",
+        file: "xfem/src/geometry/branch_functions.rs",
+        from: "let behind = [larger.copysign(phi), other.abs()];",
+        to: "let behind = [larger, other.abs()];",
         causes: MESH,
     },
     Fault {
@@ -91,12 +91,22 @@ const FAULTS: &[Fault] = &[
     },
     Fault {
         name: "a distance in metres",
-        file: "xfem/src/cut/arms.rs",
-        from: "let slack = ON_OTHER * self.size;",
-        to: "let slack = ON_OTHER;",
+        file: "xfem/src/cut/arrangement/around.rs",
+        from: "away(self.at(node)) <= DELTA * self.size(node)",
+        to: "away(self.at(node)) <= 0.1",
         causes: &["not invariant", "wrong patch", "suspect mesh", "refused"],
     },
 ];
+
+/// Goal: every fault can be planted.
+#[test]
+fn what_is_planted_stands_in_the_program_once() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for fault in FAULTS {
+        let text = fs::read_to_string(root.join(fault.file)).unwrap();
+        assert_eq!(text.matches(fault.from).count(), 1, "{}", fault.name);
+    }
+}
 
 /// Source: the suite itself. Goal: nine of ten faults make the first scenes of the default run end with a right cause more
 /// often than they do in the program as it is. A quarter of an hour: a build for every fault.
@@ -117,7 +127,6 @@ fn planted_faults_are_found_with_their_causes() {
     for fault in FAULTS {
         let path = copy.join(fault.file);
         let text = fs::read_to_string(&path).unwrap();
-        assert_eq!(text.matches(fault.from).count(), 1, "{}", fault.name);
         fs::write(&path, text.replace(fault.from, fault.to)).unwrap();
         let found = scenes_by_cause(&copy, &dir);
         fs::write(&path, text).unwrap();

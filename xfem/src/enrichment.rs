@@ -95,7 +95,7 @@ impl Enrichment {
     ) -> Result<Self, EnrichmentError> {
         let tips = match mesh.dim() {
             2 => Tips::flat(mesh, lengths, cracks, &arrangement)?,
-            _ => Tips::solid(mesh, cracks)?,
+            _ => Tips::solid(mesh, lengths, cracks)?,
         };
         let divided = tips.partitions.values().chain(tips.endings.values());
         let faces = divided.flat_map(|p| &p.faces);

@@ -64,7 +64,7 @@ pub fn record(case: &str, method: &str, tolerance: f64) -> Record {
                 points: 11,
                 unknowns: 22,
                 uniform_stress: 0.0,
-                joined: 0,
+                joined: Vec::new(),
                 moved: 0.0,
                 unique: None,
                 operator: None,

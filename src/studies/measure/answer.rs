@@ -28,18 +28,15 @@ impl Answer {
     /// The end of the last increment, as the independent check sees it.
     pub(super) fn last(&self) -> Last<'_> {
         let step = self.record.found.increments.last();
+        let size = self.record.found.problem.as_ref();
         let quantities = step.map_or(&[][..], |step| &step.quantities);
         let mut last = Last {
             quantities,
             points: self.points.last().map_or(&[][..], Vec::as_slice),
             fields: self.fields.last(),
             jump: 0.0,
-            moved: self
-                .record
-                .found
-                .problem
-                .as_ref()
-                .map_or(0.0, |size| size.moved),
+            moved: size.map_or(0.0, |size| size.moved),
+            joined: size.map_or(&[][..], |size| &size.joined),
         };
         let jumps = ["max_gap", "max_slip"].map(|name| last.quantity(name).unwrap_or(0.0));
         let reference = step.map_or(0.0, |step| step.judge.reference_jump_m);

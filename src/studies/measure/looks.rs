@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use stickslip_methods::contact_wise_margin;
+use stickslip_xfem::cut::arrangement::Moved;
 use stickslip_xfem::geometry::{norm, sub};
 
 use super::answer::Answer;
@@ -16,7 +17,7 @@ use crate::run::choice::Choice;
 use crate::run::local_problem::local_velocity;
 use crate::run::path::Moment;
 use crate::run::verdict::Verdict;
-use crate::studies::record::{Found, ProblemSize, Record, Step};
+use crate::studies::record::{Found, Joined, ProblemSize, Record, Step};
 use crate::studies::rows::Jump;
 use crate::studies::task::Task;
 use crate::studies::why::{explain, stops};
@@ -159,9 +160,15 @@ impl Scene<'_> {
             points: self.system.points(),
             unknowns: self.system.rows(),
             uniform_stress: self.uniform_stress(),
-            joined: self.body().map_or(0, |(_, loading)| {
-                let moved = loading.body().moved.iter();
-                moved.filter(|moved| moved.joined).count()
+            joined: self.body().map_or_else(Vec::new, |(_, loading)| {
+                let body = loading.body();
+                let joined = body.moved.iter().filter(|moved| moved.joined);
+                let told = |moved: &Moved| Joined {
+                    crack: moved.crack,
+                    from: body.place(&moved.from),
+                    to: body.place(&moved.to),
+                };
+                joined.map(told).collect()
             }),
             moved: self.body().map_or(0.0, |(_, loading)| {
                 let body = loading.body();

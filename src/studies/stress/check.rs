@@ -7,11 +7,12 @@ use stickslip_methods::PointStatus;
 
 use super::energy::{Energies, Found};
 use super::scene::Shape;
-use super::scene::flat::{Flat, distance};
+use super::scene::flat::{Flat, Place, distance};
 use super::uniform::Uniform;
 use crate::case::Case;
 use crate::files::nan;
 use crate::model::quantities::PointState;
+use crate::studies::record::Joined;
 
 /// Error of the energy identity that is rounding, in a body whose forces hold to 1e-12.
 const ENERGY: f64 = 1e-8;
@@ -45,7 +46,7 @@ pub struct Check {
 
 /// Checks an answer; none where nothing is known of it.
 pub fn check(case: &Case, found: Found<'_>) -> Option<Check> {
-    if let Some(patch) = Patch::of(case) {
+    if let Some(patch) = Patch::of(case, found.joined) {
         let (faults, [error, energy]) = compare(&patch, found);
         return Some(Check {
             uniform: true,
@@ -103,12 +104,20 @@ struct Patch {
 }
 
 impl Patch {
-    /// Of a case that has such an answer.
-    fn of(case: &Case) -> Option<Self> {
+    /// Of a case that has such an answer, its cracks as they are told to be joined.
+    fn of(case: &Case, joined: &[Joined]) -> Option<Self> {
         let cracks = (0..case.cracks.len()).map(|k| Shape::of(&case.crack_in_file(k)));
+        let mut cracks: Vec<Shape> = cracks.collect();
+        for Joined { crack, from, to } in joined {
+            if let Shape::Flat(Flat::Chain(points)) = &mut cracks[*crack] {
+                let away = |p: &Place| distance(p, &[from[0], from[1]]);
+                let put = points.iter_mut().min_by(|p, q| away(p).total_cmp(&away(q)));
+                put.into_iter().for_each(|p| *p = [to[0], to[1]]);
+            }
+        }
         Some(Patch {
             exact: Uniform::of(&case.source)?,
-            cracks: cracks.collect(),
+            cracks,
         })
     }
 }
@@ -392,9 +401,10 @@ mod tests {
             fields: answer.fields.last(),
             jump: 0.0,
             moved: 0.0,
+            joined: &[],
         };
         let faults = |change: &dyn Fn(&mut Uniform)| {
-            let mut patch = Patch::of(&case).unwrap();
+            let mut patch = Patch::of(&case, &[]).unwrap();
             change(&mut patch.exact);
             compare(&patch, found).0.join("; ")
         };

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::model::field_mesh::FieldStep;
 use crate::model::quantities::{PointState, Quantity};
+use crate::studies::record::Joined;
 
 /// Quantities whose change measures how far two answers are apart.
 const ENERGIES: [&str; 2] = ["strain_energy", "dissipation"];
@@ -23,6 +24,8 @@ pub struct Found<'a> {
     pub jump: f64,
     /// How far cracks were moved to what they nearly touch, in shortest edges.
     pub moved: f64,
+    /// Points of them that were joined with it.
+    pub joined: &'a [Joined],
 }
 
 impl Found<'_> {

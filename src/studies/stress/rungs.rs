@@ -68,7 +68,7 @@ impl Answer {
         };
         Some(Self {
             cracks: (0..asked.friction.len()).map(crack).collect(),
-            joined: found.problem.as_ref()?.joined,
+            joined: found.problem.as_ref()?.joined.len(),
         })
     }
 

@@ -24,13 +24,10 @@ use crate::mesh::{Lengths, Mesh};
 
 use super::arrangement::DELTA;
 
-/// A node closer to the crack than this, in units of its shortest edge, lies on it: φ = 0 exactly.
-///
-/// Above rounding of coordinates (1e-16 of the body, about 1e-14 h). The crack is bent by so much at the node, and the contact
-/// traction of a uniform stress is in error by some ten times as much (a crack that leaves the node at 10°).
+/// What is nearer to a line than this, in shortest edges, is on it but for rounding of coordinates: 1e-16 of the body, about 1e-14 h.
 pub const ON_CRACK: f64 = 1e-12;
 
-/// Distance from a crack below which a place lies on it [m]; `size`: shortest edge, `rounding`: of coordinates [m].
+/// Distance from a line that is rounding [m]; `size`: shortest edge, `rounding`: of coordinates [m].
 pub fn on_crack(size: f64, rounding: f64) -> f64 {
     (ON_CRACK * size).max(rounding)
 }

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use self::corners::Corner;
-use crate::cut::arrangement::{Arrangement, ArrangementError, Chain};
+use crate::cut::arrangement::{Arrangement, ArrangementError, Chain, WITHIN};
 use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::part::Face;
 use crate::cut::partition::{BorderPiece, Partition};
@@ -160,7 +160,7 @@ impl Tips {
     ///
     /// # Errors
     /// Two cracks in one place.
-    pub fn solid(mesh: &Mesh, arms: &[Crack]) -> Result<Self, ArrangementError> {
+    pub fn solid(mesh: &Mesh, lengths: &Lengths, arms: &[Crack]) -> Result<Self, ArrangementError> {
         let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let arms_of = arms.iter().enumerate();
@@ -251,6 +251,7 @@ impl Tips {
                 Some(radius) => {
                     let near = near.get_or_insert_with(|| Neighbours::new(mesh));
                     let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
+                    let at_front = (at_front, WITHIN * lengths.smallest);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }
                 None => Zone::plain(at_front),
@@ -463,7 +464,17 @@ impl Search<'_> {
 
     /// Cells that an arm runs through, along or ends in.
     fn cells_of(&self, arm: usize) -> Vec<usize> {
+        self.cells_with(arm, 0.0)
+    }
+
+    /// Those of them that it does not only touch.
+    fn cells_along(&self, arm: usize) -> Vec<usize> {
+        self.cells_with(arm, WITHIN * self.lengths.smallest)
+    }
+
+    fn cells_with(&self, arm: usize, least: f64) -> Vec<usize> {
         let own = self.chains_of[arm].iter();
+        let own = own.filter(|(_, chain)| chain.range[1] - chain.range[0] >= least);
         let beside =
             |(cell, chain): &(usize, &Chain)| [Some(*cell), chain.along.map(|along| along.1)];
         let mut cells: Vec<usize> = own.flat_map(beside).flatten().collect();
@@ -495,7 +506,7 @@ impl Search<'_> {
         // A tip inside a cell divides it.
         let parted = tip.cells.len() > 1
             || divided(&tip.cells[0]).is_some_and(|p| p.faces.iter().any(|f| f.crack == tip.arm));
-        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         let least = SHORTEST * self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.inside(tip.arm) > least;
         // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.

@@ -41,13 +41,14 @@ impl Zone {
     }
 
     /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and
-    /// by all nodes; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free.
+    /// by all nodes; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free. `slack`: see
+    /// [`WITHIN`](crate::cut::arrangement::WITHIN) [m].
     pub(super) fn widest(
         mesh: &Mesh,
         near: &Neighbours<'_>,
         frame: &TipFrame,
         mut radius: f64,
-        at_tip: BTreeSet<u32>,
+        (at_tip, slack): (BTreeSet<u32>, f64),
         free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> bool,
     ) -> Self {
         let of_side = |side| mesh.side_nodes(side).into_iter().map(|n| n as u32);
@@ -55,9 +56,9 @@ impl Zone {
         let beside = sides.filter(|nodes: &BTreeSet<u32>| nodes.is_disjoint(&at_tip));
         let beside: BTreeSet<u32> = beside.flatten().collect();
         let smallest = &near.nodes_around(&at_tip) - &beside;
-        let candidates = near.nodes_in(&frame.extents(radius));
+        let candidates = near.nodes_in(&frame.extents(radius + slack));
         loop {
-            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius;
+            let within = |n: &u32| frame.distance(&mesh.nodes[*n as usize]) <= radius + slack;
             let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
             let core = &(&inside - &beside) | &smallest;
             let nodes = near.nodes_around(&core);

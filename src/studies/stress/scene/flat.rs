@@ -6,7 +6,7 @@ use stickslip_xfem::mesh::stream::Stream;
 
 use super::grid::{Grid, decades, list, offset};
 
-type Place = [f64; 2];
+pub type Place = [f64; 2];
 
 /// Category, whether its cracks are placed by grid points, whether they are round: in hydrostatic stress only.
 pub const KINDS: &[(&str, bool, bool)] = &[

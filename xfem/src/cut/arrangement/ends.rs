@@ -7,7 +7,7 @@ use crate::cut::crack::{Crack, Geometry, Tip};
 use crate::cut::placement::cells_at;
 use crate::geometry::boxes::{Boxes, around};
 use crate::geometry::curve::Curve;
-use crate::geometry::polygon::{segment_distance, segment_foot};
+use crate::geometry::polygon::{crossed, segment_distance, segment_foot};
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, root, sub, unit, unite};
 
 use super::around::Around;
@@ -16,7 +16,7 @@ use super::{BEND, DELTA, LINE};
 
 /// An end or a bend closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
 /// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
-const JOINED: f64 = 1e-2;
+pub const JOINED: f64 = 1e-2;
 
 /// How far an end is followed to where it really crosses, in the same units: so it keeps its direction.
 const FOLLOWED: f64 = 10.0 * JOINED;
@@ -51,7 +51,7 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
         let met = group.iter().filter_map(|end| {
             let near = boxes.meeting(&[end.x; 2]).into_iter();
             let others = near.filter(|line| !own.contains(line));
-            let places = others.filter_map(|line| met(end, &lines[line], size));
+            let places = others.filter_map(|line| met(around, end, &lines[line]));
             // Where it lies on one already, or the first that it runs into.
             let key = |x: &Point| (*x != end.x, dot(&sub(x, &end.x), &end.ahead));
             places.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
@@ -59,7 +59,7 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
         let middle = mean(&group.iter().map(|end| end.x).collect::<Vec<_>>());
         let away = |x: &Point| norm(&sub(x, &middle));
         let met = met.min_by(|a, b| away(a).total_cmp(&away(b)));
-        let common = met.or_else(|| common_place(&group, size));
+        let common = met.or_else(|| Some(onto_side(around, common_place(&group, size)?)));
         for end in &group {
             if let Some(to) = common.or_else(|| way_out(around, end)) {
                 // A place that was put there keeps its digits.
@@ -125,8 +125,10 @@ fn groups(ends: &[End], size: f64) -> Vec<Vec<End>> {
     groups.into_values().collect()
 }
 
-/// Where the line of an end crosses a polyline that it nearly touches, the nearest such place.
-fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
+/// Where the line of an end crosses a polyline that it nearly touches, the nearest such place; at a bend of that, or where that leaves
+/// the body, if it is beside.
+fn met(around: &Around<'_>, end: &End, points: &[Point]) -> Option<Point> {
+    let size = around.lengths.smallest;
     let close = |w: &&[Point]| segment_distance(&end.x, &w[0], &w[1]) <= FOLLOWED * size;
     let mut segments = points.windows(2).filter(close);
     let away = |w: &[Point]| segment_distance(&end.x, &w[0], &w[1]);
@@ -135,10 +137,7 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
         return None;
     }
     // It lies there: what it runs through is snapped to it.
-    if nearest <= LINE * DELTA * size {
-        return Some(end.x);
-    }
-    let along = |x: &Point| norm(&sub(x, &end.x));
+    let lies_there = nearest <= LINE * DELTA * size;
     let places = segments.by_ref().filter_map(|w| {
         let (d, from) = (sub(&w[1], &w[0]), sub(&w[0], &end.x));
         let turn = cross(&end.ahead, &d)[2];
@@ -149,15 +148,30 @@ fn met(end: &End, points: &[Point], size: f64) -> Option<Point> {
         let inside = (0.0..=1.0).contains(&share) && t.abs() <= FOLLOWED * size;
         inside.then(|| add_scaled(&w[0], share, &d))
     });
-    let crossing = places.min_by(|a, b| along(a).total_cmp(&along(b)));
+    let first = |places: &mut dyn Iterator<Item = Point>, from: &Point| {
+        let away = |x: &Point| norm(&sub(x, from));
+        places.min_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    let crossing = match lies_there {
+        true => Some(end.x),
+        false => first(&mut { places }, &end.x),
+    };
     // It passes a bend of the other; beside a straight part it ends alone.
+    let from = crossing.unwrap_or(end.x);
     let bends = points.windows(3).filter(|w| bend(w) > BEND).map(|w| w[1]);
-    let near = bends.filter(|x| along(x) <= JOINED * size);
-    crossing.or_else(|| near.min_by(|a, b| along(a).total_cmp(&along(b))))
+    let sides = around.edges_near(&[from], JOINED * size);
+    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+    let mouths = sides.flat_map(|edge| {
+        let side = edge.map(|node| *around.at(node));
+        let meets = move |w: &[Point]| Some(crossed([&w[0], &w[1]], [&side[0], &side[1]], 0.0)?.1);
+        points.windows(2).filter_map(meets).collect::<Vec<_>>()
+    });
+    let beside = |x: &Point| norm(&sub(x, &from)) <= JOINED * size;
+    first(&mut bends.chain(mouths).filter(beside), &from).or(crossing)
 }
 
 /// By how much a polyline turns at the middle one of three points [rad].
-fn bend(w: &[Point]) -> f64 {
+pub(super) fn bend(w: &[Point]) -> f64 {
     let [a, b] = [0, 1].map(|i| sub(&w[i + 1], &w[i]));
     cross(&a, &b)[2].atan2(dot(&a, &b)).abs()
 }
@@ -239,6 +253,18 @@ fn common_place(group: &[End], size: f64) -> Option<Point> {
         crossings = group.iter().map(|end| end.x).collect();
     }
     Some(mean(&crossings))
+}
+
+/// A place, or that on the side of the body which it nearly touches.
+fn onto_side(around: &Around<'_>, x: Point) -> Point {
+    let reach = JOINED * around.lengths.smallest;
+    let sides = around.edges_near(&[x], reach);
+    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+    let feet = sides.filter_map(|edge| foot(&x, &edge.map(|node| *around.at(node))));
+    let nearest = feet.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest
+        .filter(|foot| foot.0 <= reach)
+        .map_or(x, |foot| foot.1)
 }
 
 fn is_near(end: &End, x: &Point, size: f64) -> bool {

@@ -16,10 +16,11 @@ use crate::geometry::polygon::{crossed, segment_foot};
 use crate::geometry::{Point, add_scaled, mean, norm, root, sub, unite};
 
 use super::around::Around;
-use super::{ArrangementError, DELTA, LINE, Line, Link, Moved, On, Vertex};
+use super::ends::bend;
+use super::{ArrangementError, BEND, DELTA, LINE, Line, Link, Moved, On, Vertex};
 
-/// Places where a crack meets others closer than this to each other are one, in shortest edges: a modelling length, for no piece between
-/// them can tell its rigid motion.
+/// Places where a crack meets others, bends or leaves the body, closer than this to each other, are one, in shortest edges: a modelling
+/// length, for no piece between them can tell its rigid motion, and no arm its forces.
 const SAME_PLACE: f64 = 1e-3;
 
 /// Rounds of snapping; one or two suffice wherever tried.
@@ -113,10 +114,24 @@ impl<'a> Net<'a> {
         uses
     }
 
+    /// Which vertices are places where lines meet, bend or leave the body; `uses`: how often lines use each.
+    fn noted(&self, uses: &[usize]) -> Vec<bool> {
+        let outer = |(v, &uses): (&Vertex, &usize)| uses > 1 || self.around.is_outer(v.on);
+        let mut noted: Vec<bool> = self.vertices.iter().zip(uses).map(outer).collect();
+        for line in &self.lines {
+            for w in line.links.windows(3).filter(|w| w[1].given) {
+                let places = [0, 1, 2].map(|i| *self.at(&w[i]));
+                noted[w[1].vertex] |= bend(&places) > BEND;
+            }
+        }
+        noted
+    }
+
     /// Makes vertices one that are close to each other; whether there were any.
     fn merge(&mut self) -> bool {
         let count = self.vertices.len();
         let uses = self.uses();
+        let noted = self.noted(&uses);
         let reach = SAME_PLACE * self.vertices.iter().map(|v| v.size).fold(0.0, f64::max);
         let boxes = Boxes::new(self.vertices.iter().map(|v| [v.x; 2]));
         let mut parent: Vec<usize> = (0..count).collect();
@@ -124,14 +139,10 @@ impl<'a> Net<'a> {
         for (i, a) in self.vertices.iter().enumerate().filter(|v| uses[v.0] > 0) {
             for j in boxes.meeting(&around(
                 [&a.x],
-                if uses[i] > 1 {
-                    reach
-                } else {
-                    self.around.reach
-                },
+                if noted[i] { reach } else { self.around.reach },
             )) {
                 let b = &self.vertices[j];
-                let by = if uses[i].min(uses[j]) > 1 {
+                let by = if noted[i] && noted[j] {
                     SAME_PLACE
                 } else {
                     DELTA

@@ -68,7 +68,8 @@ impl Search<'_> {
                 .iter()
                 .find_map(|&end| self.cells_at(end))
                 .unwrap_or_default();
-            let nodes = self.mesh.nodes_of(cells.iter().copied());
+            let beside = self.cells_beside(&x);
+            let nodes = self.mesh.nodes_of(beside.iter().copied());
             let sizes = nodes.iter();
             let sizes = sizes.map(|&node| self.lengths.of_nodes[node as usize]);
             let size = sizes.fold(f64::INFINITY, f64::min);
@@ -81,7 +82,7 @@ impl Search<'_> {
             let Some((arms, others)) = self.corner_arms((&x, ends), &nodes, size) else {
                 continue;
             };
-            let Some(zone) = self.corner_zone(&arms, &others, &cells, DEEP * size) else {
+            let Some(zone) = self.corner_zone(&arms, &others, &beside, DEEP * size) else {
                 continue;
             };
             let first = tips.frames.len();
@@ -290,7 +291,7 @@ impl Search<'_> {
     /// The arms whose functions every node carries: those beside it, and one more.
     fn sets(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> Vec<(u32, usize)> {
         let cells: Vec<BTreeSet<usize>> = (arms.iter())
-            .map(|arm| self.cells_of(arm.frame.crack).into_iter().collect())
+            .map(|arm| self.cells_along(arm.frame.crack).into_iter().collect())
             .collect();
         let beside = |node: u32, arm: usize| {
             let around = self.near.cells_around(&BTreeSet::from([node]));

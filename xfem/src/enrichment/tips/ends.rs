@@ -72,7 +72,7 @@ impl Search<'_> {
         let gentle = self.run(tip, BEND.cos());
         let own = gentle.own;
         let end = self.ending_of(tip, &frame, gentle, own);
-        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         if !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes)) {
             return end;
         }

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::cut::arrangement::TracedTip;
+use crate::cut::arrangement::{TracedTip, WITHIN};
 use crate::cut::crack::Tip;
 use crate::cut::part::Place;
 use crate::cut::partition::Partition;
 use crate::geometry::Point;
 use crate::geometry::boxes::around;
+use crate::geometry::polygon;
 use crate::geometry::segments::Segments;
 use crate::geometry::tip_frame::FrontShape;
 
@@ -20,6 +21,17 @@ use super::{GRAZING, LONGER, SHARE, Search};
 const FAR: f64 = 4.0;
 
 impl Search<'_> {
+    /// Cells that hold a place or lie beside it: their nodes carry its functions, so nothing changes where it leaves a cell.
+    pub(super) fn cells_beside(&self, x: &Point) -> Vec<usize> {
+        let reach = WITHIN * self.lengths.smallest;
+        let mut near = self.mesh.surroundings().meeting(&around([x], reach));
+        near.retain(|&cell| {
+            let map = self.mesh.map(cell);
+            polygon::contains(&map, x) || polygon::border_distance(&map, x) <= reach
+        });
+        near
+    }
+
     /// Parts of the cells of some nodes that others than the arms along which the functions of an end jump part from it.
     pub(super) fn cut_off(&self, end: &Ending, nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
         let cells = self.near.cells_around(nodes);
@@ -60,7 +72,7 @@ impl Search<'_> {
     pub(super) fn zone(&self, tip: &TracedTip, end: &Ending) -> Zone {
         let (arms, room) = ([end.clone()], end.room);
         let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
-        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         let mut zone = match radius {
             Some(radius) => self.within(radius, &arms, nodes),
             None => Zone::plain(nodes),
@@ -107,6 +119,7 @@ impl Search<'_> {
                 .iter()
                 .map(|arm| arm.room)
                 .fold(f64::INFINITY, f64::min);
+        let at_tip = (at_tip, WITHIN * self.lengths.smallest);
         Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
             let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
             nodes.iter().all(close)
@@ -125,7 +138,7 @@ impl Search<'_> {
     /// The functions of the nodes at a tip on what other cracks part from it, with unknowns of their own: what carries the load
     /// of a narrow ligament feels its end, too.
     pub(super) fn beyond(&self, tip: &TracedTip, end: &Ending, zone: &Zone) -> Option<Zone> {
-        let nodes = self.mesh.nodes_of(tip.cells.iter().copied());
+        let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         let places = self.near.cells_around(&nodes).into_iter().flat_map(|cell| {
             let parts = self.partitions.get(&cell).map_or(1, |p| p.parts.len());
             (0..parts).map(move |region| (cell, region))
