@@ -105,7 +105,8 @@ fn cost(body: &Body, increments: usize) -> String {
 }
 
 fn moved_line(body: &Body, moved: &Moved) -> String {
-    let [from, to] = [&moved.from, &moved.to].map(|x| vector(&body.place(x)[..2]));
+    let dim = body.mesh.dim();
+    let [from, to] = [&moved.from, &moved.to].map(|x| vector(&body.place(x)[..dim]));
     let by = significant(norm(&sub(&moved.to, &moved.from)), DIGITS);
     let crack = moved.crack + 1;
     match moved.joined {

@@ -17,6 +17,7 @@ use crate::studies::followed::Value;
 use crate::studies::origin::{Limits, Origin};
 use crate::studies::statistics::{Timing, larger};
 use crate::studies::stress::check::Check;
+use crate::studies::stress::energy::Joined;
 use crate::studies::stress::twin::Change;
 use crate::studies::task::{Asked, Looks, Task};
 use crate::studies::why::Explanation;
@@ -137,17 +138,6 @@ pub struct Found {
     /// Change by the view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<Change>,
-}
-
-/// A point of a crack that was joined with what it nearly touches.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Joined {
-    /// Number of the crack, from 0.
-    pub crack: usize,
-    /// Where it was put [m].
-    pub from: [f64; 3],
-    /// Where it is [m].
-    pub to: [f64; 3],
 }
 
 /// Size of a discrete problem.

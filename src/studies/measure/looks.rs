@@ -17,8 +17,9 @@ use crate::run::choice::Choice;
 use crate::run::local_problem::local_velocity;
 use crate::run::path::Moment;
 use crate::run::verdict::Verdict;
-use crate::studies::record::{Found, Joined, ProblemSize, Record, Step};
+use crate::studies::record::{Found, ProblemSize, Record, Step};
 use crate::studies::rows::Jump;
+use crate::studies::stress::energy::Joined;
 use crate::studies::task::Task;
 use crate::studies::why::{explain, stops};
 

@@ -5,14 +5,13 @@
 use serde::{Deserialize, Serialize};
 use stickslip_methods::PointStatus;
 
-use super::energy::{Energies, Found};
+use super::energy::{Energies, Found, Joined};
 use super::scene::Shape;
 use super::scene::flat::{Flat, Place, distance};
 use super::uniform::Uniform;
 use crate::case::Case;
 use crate::files::nan;
 use crate::model::quantities::PointState;
-use crate::studies::record::Joined;
 
 /// Error of the energy identity that is rounding, in a body whose forces hold to 1e-12.
 const ENERGY: f64 = 1e-8;

@@ -1,15 +1,27 @@
 //! Energies of a body, and what their errors are relative to.
 
+use serde::{Deserialize, Serialize};
+
 use crate::case::Case;
 use crate::model::field_mesh::FieldStep;
 use crate::model::quantities::{PointState, Quantity};
-use crate::studies::record::Joined;
 
 /// Quantities whose change measures how far two answers are apart.
 const ENERGIES: [&str; 2] = ["strain_energy", "dissipation"];
 
 /// Part of the energy of a deformed body below which energy is rounding.
 const STILL: f64 = 1e-10;
+
+/// A point of a crack that was joined with what it nearly touches.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Joined {
+    /// Number of the crack, from 0.
+    pub crack: usize,
+    /// Where it was put [m].
+    pub from: [f64; 3],
+    /// Where it is [m].
+    pub to: [f64; 3],
+}
 
 /// The state looked at: the end of one increment from rest.
 #[derive(Clone, Copy)]

@@ -53,7 +53,7 @@ struct Free {
     ahead: Point,
 }
 
-/// Divides a cell by chains; `number`: the crack of an arm.
+/// Divides a cell by chains; `straight`: one number for the arms that make one line.
 ///
 /// # Errors
 /// Pieces that do not fit together.
@@ -62,7 +62,7 @@ pub fn divide(
     cell: usize,
     arrangement: &Arrangement,
     chains: &[&Chain],
-    number: impl Fn(usize) -> usize,
+    straight: impl Fn(usize) -> usize,
 ) -> Result<Partition, PartitionError> {
     let (mut graph, mut free) = Graph::new(mesh, cell, arrangement, chains);
     // The nearest first, then by place: by no order of names.
@@ -76,7 +76,7 @@ pub fn divide(
         graph.extend(end)?;
     }
     let dropped = graph.prune();
-    let mut partition = graph.rings(cell, number)?;
+    let mut partition = graph.rings(cell, straight)?;
     let areas = partition
         .parts
         .iter()
@@ -268,7 +268,7 @@ impl Graph {
     fn rings(
         &self,
         cell: usize,
-        number: impl Fn(usize) -> usize,
+        straight: impl Fn(usize) -> usize,
     ) -> Result<Partition, PartitionError> {
         // Halves 2k and 2k + 1 of edge k, along it and back.
         let ends = |half: usize| {
@@ -395,7 +395,7 @@ impl Graph {
                 (from, at_place) = (to, false);
             }
         }
-        tell_sides(&mut parts, &beside, number);
+        tell_sides(&mut parts, &beside, straight);
         partition.parts = parts;
         Ok(partition)
     }
@@ -416,10 +416,15 @@ impl Graph {
     }
 }
 
-/// Tells every region its side of the cracks of the cell: where it borders on an arm that of the arm, elsewhere that of the crack,
-/// if the crack keeps it from the other side.
-fn tell_sides(parts: &mut [Part], beside: &[(usize, [usize; 2])], number: impl Fn(usize) -> usize) {
-    let arms: BTreeMap<usize, usize> = beside.iter().map(|(arm, _)| (*arm, number(*arm))).collect();
+/// Tells every region its side of the arms of the cell: where it borders on an arm that, elsewhere that of the line of arms, if this keeps
+/// it from the other side.
+fn tell_sides(
+    parts: &mut [Part],
+    beside: &[(usize, [usize; 2])],
+    straight: impl Fn(usize) -> usize,
+) {
+    let arms = beside.iter().map(|(arm, _)| (*arm, straight(*arm)));
+    let arms: BTreeMap<usize, usize> = arms.collect();
     for &(arm, regions) in beside {
         for (region, side) in regions.into_iter().zip([1.0, -1.0]) {
             if parts[region].side(arm).is_none() {
@@ -427,13 +432,13 @@ fn tell_sides(parts: &mut [Part], beside: &[(usize, [usize; 2])], number: impl F
             }
         }
     }
-    for (&arm, &crack) in &arms {
+    for (&arm, &line) in &arms {
         let reached = |first: usize| {
-            let own = beside.iter().filter(|(arm, _)| arms[arm] == crack);
+            let own = beside.iter().filter(|(arm, _)| arms[arm] == line);
             let mut reached: Vec<bool> = vec![false; parts.len()];
             own.for_each(|(_, regions)| reached[regions[first]] = true);
             loop {
-                let others = beside.iter().filter(|(arm, _)| arms[arm] != crack);
+                let others = beside.iter().filter(|(arm, _)| arms[arm] != line);
                 let open = others.map(|(_, regions)| regions);
                 let fresh = open
                     .flat_map(|&[a, b]| [(a, b), (b, a)])

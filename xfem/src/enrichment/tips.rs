@@ -112,7 +112,13 @@ impl Tips {
             tips_by_place: Boxes::new(arrangement.tips.iter().map(|tip| [tip.x; 2])),
             tips_of: vec![Vec::new(); arms.len()],
             chains_of: vec![Vec::new(); arms.len()],
+            straight: (0..arms.len()).collect(),
         };
+        for arm in 1..arms.len() {
+            if search.goes_on(arm - 1, arm) {
+                search.straight[arm] = search.straight[arm - 1];
+            }
+        }
         for (number, tip) in arrangement.tips.iter().enumerate() {
             search.tips_of[tip.arm].push(number);
         }
@@ -306,6 +312,8 @@ struct Search<'a> {
     paths: Vec<Segments>,
     tips_of: Vec<Vec<usize>>,
     chains_of: Vec<Vec<(usize, &'a Chain)>>,
+    /// By arm: the first of those of its crack that go straight on through meetings.
+    straight: Vec<usize>,
     partitions: BTreeMap<usize, Partition>,
     /// See [`Tips::parted`].
     parted: BTreeSet<([u32; 2], usize)>,
@@ -362,13 +370,12 @@ impl Search<'_> {
 
     /// The regions of a cell between chains through it.
     fn divided(&self, cell: usize, chains: &[&Chain]) -> Result<Partition, EnrichmentError> {
-        let number = |arm: usize| self.arms[arm].number;
-        regions::divide(self.mesh, cell, self.arrangement, chains, number).map_err(|reason| {
-            EnrichmentError::Partition {
-                crack: chains.last().map_or(0, |chain| number(chain.arm)),
-                reason,
-                at: self.mesh.centre(cell),
-            }
+        let straight = |arm: usize| self.straight[arm];
+        let found = regions::divide(self.mesh, cell, self.arrangement, chains, straight);
+        found.map_err(|reason| EnrichmentError::Partition {
+            crack: chains.last().map_or(0, |chain| self.arms[chain.arm].number),
+            reason,
+            at: self.mesh.centre(cell),
         })
     }
 

@@ -213,10 +213,19 @@ fn bends_beside(
         {
             return None;
         }
+        // What runs beside one of its legs stays apart.
+        let legs = [k - 1, k + 1].map(|next| {
+            let d = unit(&sub(&lines[line][next], &x));
+            add_scaled(&x, FOLLOWED * size, &d)
+        });
+        let apart = |other: usize| {
+            let near = |leg: &Point| foot(leg, &lines[other]).is_some_and(|f| f.0 <= JOINED * size);
+            other != line && legs.iter().any(near)
+        };
         let others = places
             .meeting(&here)
             .into_iter()
-            .filter(|&other| close(&all[other].2, &x));
+            .filter(|&other| close(&all[other].2, &x) && !apart(all[other].0));
         let others: Vec<Point> = others.map(|other| all[other].2).collect();
         if others.len() > 1 {
             return Some((line, k, mean(&others)));
@@ -224,7 +233,7 @@ fn bends_beside(
         let near = boxes
             .meeting(&[x; 2])
             .into_iter()
-            .filter(|&other| other != line);
+            .filter(|&other| other != line && !apart(other));
         let feet = near.filter_map(|other| foot(&x, &lines[other]));
         let sides = around.edges_near(&[x], JOINED * size);
         let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);

@@ -114,6 +114,17 @@ impl<'a> Net<'a> {
         uses
     }
 
+    /// The lines through every vertex.
+    fn lines_of(&self) -> Vec<Vec<usize>> {
+        let mut lines = vec![Vec::new(); self.vertices.len()];
+        for (l, line) in self.lines.iter().enumerate() {
+            line.links
+                .iter()
+                .for_each(|link| lines[link.vertex].push(l));
+        }
+        lines
+    }
+
     /// Which vertices are places where lines meet, bend or leave the body; `uses`: how often lines use each.
     fn noted(&self, uses: &[usize]) -> Vec<bool> {
         let outer = |(v, &uses): (&Vertex, &usize)| uses > 1 || self.around.is_outer(v.on);
@@ -131,7 +142,12 @@ impl<'a> Net<'a> {
     fn merge(&mut self) -> bool {
         let count = self.vertices.len();
         let uses = self.uses();
-        let noted = self.noted(&uses);
+        let (noted, lines) = (self.noted(&uses), self.lines_of());
+        // Mouths of two lines that run beside each other stay apart.
+        let one_place = |i: usize, j: usize| {
+            let both = noted[i] && noted[j];
+            both && (uses[i].min(uses[j]) > 1 || lines[i].iter().any(|l| lines[j].contains(l)))
+        };
         let reach = SAME_PLACE * self.vertices.iter().map(|v| v.size).fold(0.0, f64::max);
         let boxes = Boxes::new(self.vertices.iter().map(|v| [v.x; 2]));
         let mut parent: Vec<usize> = (0..count).collect();
@@ -142,11 +158,7 @@ impl<'a> Net<'a> {
                 if noted[i] { reach } else { self.around.reach },
             )) {
                 let b = &self.vertices[j];
-                let by = if noted[i] && noted[j] {
-                    SAME_PLACE
-                } else {
-                    DELTA
-                };
+                let by = if one_place(i, j) { SAME_PLACE } else { DELTA };
                 if j < i && uses[j] > 0 && norm(&sub(&a.x, &b.x)) <= by * a.size.min(b.size) {
                     unite(&mut parent, i, j);
                     changed = true;

@@ -179,7 +179,7 @@ impl Search<'_> {
     }
 
     /// Whether a crack goes on from one of two arms to the other, without a bend that parts it.
-    fn goes_on(&self, one: usize, two: usize) -> bool {
+    pub(super) fn goes_on(&self, one: usize, two: usize) -> bool {
         let [first, second] = [one.min(two), one.max(two)].map(|arm| &self.arms[arm]);
         let follows = one.abs_diff(two) == 1 && first.number == second.number;
         let [Some(to), Some(from)] = [first.path.windows(2).last(), second.path.windows(2).next()]
