@@ -43,6 +43,14 @@ fn uniform_stress_is_in_balance_on_every_mesh() {
     }
 }
 
+/// Goal: functions that follow their crack around bends on a grid line take the side of what each region borders on. Tolerance: the rule
+/// beside bends; a wrong side is off by 0.2.
+#[test]
+fn functions_follow_bends_on_a_grid_line() {
+    let body = body(include_str!("../data/zigzag_on_lines.toml"));
+    assert_below(body.checks.uniform, 1e-11, "uniform stress");
+}
+
 /// Source: uniaxial strain of a plane body between rollers, σ_yy = −E/(1 − ν²) u/H, σ_xx = 0; both cracks stick. Goal: the
 /// pressure on a crack at an angle θ is |σ_yy| cos² θ, the shear |σ_yy| sin θ cos θ, at every contact point: with zones that meet
 /// in a cell, with a tip beside a crossing crack, on a crack of 1.4 cells, beside a roller. Tolerance 1e-9.

@@ -19,7 +19,7 @@ pub type Place = (usize, Region);
 /// A part of a cell.
 #[derive(Debug, Clone, Default)]
 pub struct Part {
-    /// Sides of the cracks that divide it from other parts, in crack order.
+    /// Sides of the cracks that divide it from other parts: in 2D first of those that it borders on; each in crack order.
     pub sides: Vec<(usize, Side)>,
     /// 2D: its outline, counter-clockwise.
     pub polygon: Polygon,

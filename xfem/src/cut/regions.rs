@@ -416,8 +416,8 @@ impl Graph {
     }
 }
 
-/// Tells every region its side of the arms of the cell: where it borders on an arm that, elsewhere that of the line of arms, if this keeps
-/// it from the other side.
+/// Tells every region its side of the arms of the cell: of those that it borders on first, then of the others whose line keeps it from the
+/// other side.
 fn tell_sides(
     parts: &mut [Part],
     beside: &[(usize, [usize; 2])],
@@ -431,6 +431,9 @@ fn tell_sides(
                 parts[region].sides.push((arm, side));
             }
         }
+    }
+    for part in parts.iter_mut() {
+        part.sides.sort_by_key(|side| side.0);
     }
     for (&arm, &line) in &arms {
         let reached = |first: usize| {
@@ -456,7 +459,4 @@ fn tell_sides(
             }
         }
     }
-    parts
-        .iter_mut()
-        .for_each(|part: &mut Part| part.sides.sort_by_key(|side| side.0));
 }

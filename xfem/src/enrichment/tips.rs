@@ -406,10 +406,9 @@ impl Search<'_> {
                 ends.iter().all(|&i| edge.contains(&nodes[i])) && (0.0..length).contains(&middle)
             };
             for piece in border.iter().filter(on_edge) {
-                let own = &mut parts[piece.region];
-                if own.side(chain.arm).is_none() {
-                    own.sides.push((chain.arm, side));
-                }
+                let own = &mut parts[piece.region].sides;
+                own.retain(|other| other.0 != chain.arm);
+                own.insert(0, (chain.arm, side));
                 pieces.push(piece.clone());
             }
             if side < 0.0 {
