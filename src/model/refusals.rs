@@ -123,7 +123,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
     let error = &error.clone().moved(&case.origin);
     let (crack, allowed) = match error {
         EnrichmentError::Outside(crack) => (*crack, "a crack that cuts at least one cell"),
-        EnrichmentError::TooShort(crack) => (*crack, "a longer crack"),
+        EnrichmentError::TooShort { crack, .. } => (*crack, "a longer crack"),
         EnrichmentError::Undetermined { crack, .. } => (*crack, "longer pieces"),
         EnrichmentError::Loose { crack, .. } => (*crack, "supports on the piece"),
         EnrichmentError::Singular { crack, .. } => (
@@ -150,7 +150,7 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         _ => &spec.geometry_span,
     };
     let fitting = match (&spec.geometry, error) {
-        (_, EnrichmentError::TooShort(_)) => fitting_cell(&spec.geometry),
+        (_, EnrichmentError::TooShort { .. }) => fitting_cell(&spec.geometry),
         (
             _,
             EnrichmentError::Undetermined { cell, .. }

@@ -227,6 +227,15 @@ impl Crack {
         }
     }
 
+    /// A place of it halfway along, of an ellipse its centre, a point of a plane [m].
+    pub fn middle(&self) -> Point {
+        match &self.geometry {
+            Geometry::Curve(_) => self.path[self.path.len() / 2].x,
+            Geometry::Ellipse(ellipse) => ellipse.centre,
+            Geometry::Plane { origin, .. } => *origin,
+        }
+    }
+
     /// Cells that it may touch, and their neighbours, ascending.
     pub fn cells(&self) -> &[usize] {
         &self.near.cells

@@ -81,7 +81,7 @@ pub(super) fn faces(
         .iter()
         .for_each(|point| found[point.crack] = true);
     if let Some(number) = found.iter().position(|found| !found) {
-        return Err(EnrichmentError::TooShort(number).into());
+        return Err(EnrichmentError::too_short(cracks, number).into());
     }
     Ok(surface)
 }

@@ -1,6 +1,7 @@
 //! Cracks that a mesh cannot carry.
 
 use crate::cut::arrangement::ArrangementError;
+use crate::cut::crack::Crack;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
 
@@ -11,8 +12,13 @@ pub enum EnrichmentError {
     #[error("crack {} lies wholly outside the mesh", .0 + 1)]
     Outside(usize),
     /// Both tips in one cell, or in neighbours that share all contact: no contact point is left.
-    #[error("crack {} is too short for this mesh: no cell edge between its tips can carry contact", .0 + 1)]
-    TooShort(usize),
+    #[error("crack {} is too short for this mesh, near {at:?}: no cell edge between its tips can carry contact", crack + 1)]
+    TooShort {
+        /// Crack number, from 0.
+        crack: usize,
+        /// Its middle [m].
+        at: Point,
+    },
     /// Pieces of it share all displacements: no contact force can be told from another.
     #[error("crack {} has a piece between its bends, junctions and ends, near {at:?}, that is too short for this mesh: nothing tells the force on it from those beside it", crack + 1)]
     Undetermined {
@@ -67,18 +73,28 @@ pub enum EnrichmentError {
 }
 
 impl EnrichmentError {
+    /// Refuses a crack, given its arms.
+    pub fn too_short(arms: &[Crack], crack: usize) -> Self {
+        let own: Vec<&Crack> = arms.iter().filter(|arm| arm.number == crack).collect();
+        let at = own
+            .get(own.len() / 2)
+            .map_or([f64::NAN; 3], |arm| arm.middle());
+        Self::TooShort { crack, at }
+    }
+
     /// The same with its place in other coordinates, larger by `by` [m].
     pub fn moved(mut self, by: &Point) -> Self {
         match &mut self {
             Self::Arrangement(
                 ArrangementError::Overlap { at, .. } | ArrangementError::Point { at, .. },
             )
+            | Self::TooShort { at, .. }
             | Self::Undetermined { at, .. }
             | Self::Loose { at, .. }
             | Self::Singular { at, .. }
             | Self::Partition { at, .. }
             | Self::OffFacets { at, .. } => *at = add_scaled(at, 1.0, by),
-            Self::Outside(_) | Self::TooShort(_) => {}
+            Self::Outside(_) => {}
         }
         self
     }

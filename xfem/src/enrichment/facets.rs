@@ -144,8 +144,14 @@ impl CrackFacets {
         found
     }
 
+    /// Parts the segments of an arm at the second multipliers of its corners.
+    pub fn part_at_corners(&mut self, enrichment: &Enrichment, arm: usize) {
+        let own = enrichment.corners_of(arm);
+        own.for_each(|corner| self.part(&corner.x, corner.second()));
+    }
+
     /// Parts the segment of a plane crack that crosses the distance d from a place [m].
-    pub fn part(&mut self, from: &Point, d: f64) {
+    fn part(&mut self, from: &Point, d: f64) {
         /// Corners this near to it, in parts of d, are there.
         const THERE: f64 = 1e-6;
         let beyond = |c: usize| norm(&sub(&self.corners[c].x, from)) - d;

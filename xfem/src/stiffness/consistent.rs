@@ -258,7 +258,9 @@ impl CellIntegrator<'_> {
         let cracks: BTreeSet<usize> = faces.iter().map(|face| face.crack).collect();
         for index in cracks {
             let crack = &self.cracks[index];
-            let facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
+            let mut facets = CrackFacets::of_cell(self.mesh, cell, index, crack, self.enrichment);
+            // As the multipliers see them.
+            facets.part_at_corners(self.enrichment, index);
             let all = facets.facets.iter();
             for facet in all.filter(|facet| facet.sides.iter().all(|side| side.0 == cell)) {
                 for p in facet_points(self.mesh, crack, self.enrichment, &facets, facet) {

@@ -57,6 +57,15 @@ pub struct Corner {
     pub size: f64,
 }
 
+impl Corner {
+    /// Distance of the second multipliers of its arms [m].
+    pub fn second(&self) -> f64 {
+        /// In edges of the mesh: answers are alike from 0.05 to 0.15, at 0.3 the faces overlap.
+        const SECOND: f64 = 0.1;
+        SECOND * self.size
+    }
+}
+
 /// An arm and which of its ends, 0 or 1.
 type ArmEnd = (usize, usize);
 
