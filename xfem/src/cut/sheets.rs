@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 
 use super::crack::{Crack, crossings};
 use super::is_split;
-use super::part::{Face, FaceCorner};
+use super::part::{Face, FaceCorner, Place};
 use super::partition::{Partition, clip_face, lives};
 use super::placement::{Along, along_places};
 
@@ -73,13 +73,15 @@ pub fn overlap(mesh: &Mesh, arms: &[Crack], cell: usize, own: &[usize]) -> Optio
     })
 }
 
-/// Adds the faces of sheets to the first cells of theirs.
+/// Adds the faces of sheets to the first cells of theirs. Of the arms of a crack that differ by cracks which are not there alone the first
+/// has a face.
 pub fn add_faces(
     mesh: &Mesh,
     arms: &[Crack],
     sheets: &[&Sheet],
     partitions: &mut BTreeMap<usize, Partition>,
 ) {
+    let mut taken: BTreeSet<(usize, [Place; 2])> = BTreeSet::new();
     for sheet in sheets {
         let crack = &arms[sheet.arm];
         let map = mesh.map(sheet.cells[0]);
@@ -106,7 +108,7 @@ pub fn add_faces(
             for two in 0..regions(sheet.cells[1]) {
                 let corners = clipped(sheet.cells[1], two, left.clone());
                 let sides = [(sheet.cells[0], one), (sheet.cells[1], two)];
-                if corners.len() > 2 {
+                if corners.len() > 2 && taken.insert((crack.number, sides)) {
                     faces.push(Face {
                         crack: sheet.arm,
                         corners,
