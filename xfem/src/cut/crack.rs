@@ -86,7 +86,7 @@ pub struct PathVertex {
 /// The side of a plane on which an arm in a solid lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parent {
-    /// Index of the crack it ends on.
+    /// First arm of the crack it ends on.
     pub crack: usize,
     /// Side of that crack on which the arm lies.
     pub side: Side,
@@ -124,8 +124,8 @@ pub(super) struct LevelSet {
     phi: Vec<f64>,
     /// Nodes on it, ascending.
     on: Vec<u32>,
-    /// Of a solid: what lies this near to it is on it [m].
-    slack: f64,
+    /// Of a solid: what lies this near to its plane or front is on it [m].
+    slack: [f64; 2],
 }
 
 impl Crack {
@@ -182,11 +182,13 @@ impl Crack {
         crack
     }
 
-    /// Finds the mesh next to it. `on`: nodes on it; otherwise those closer to its curve or plane than [`DELTA`].
+    /// Finds the mesh next to it. `on`: nodes on it; otherwise those that are but for rounding.
     pub(super) fn place(&mut self, mesh: &Mesh, lengths: &Lengths, on: Option<BTreeSet<u32>>) {
         let cells = mesh.surroundings().meeting(&self.extents());
         let nodes: Vec<u32> = mesh.nodes_of(cells.iter().copied()).into_iter().collect();
-        let slack = (DELTA * lengths.smallest).max(lengths.rounding);
+        // Flat faces are those that tetrahedra have, too: no node but those it runs through is on it.
+        let slack = on_crack(lengths.smallest, lengths.rounding);
+        let delta = (DELTA * lengths.smallest).max(lengths.rounding);
         let phi = nodes.iter().map(|node| {
             let size = lengths.of_nodes[*node as usize];
             let distance = self.distance(&mesh.nodes[*node as usize]);
@@ -209,7 +211,7 @@ impl Crack {
             nodes,
             phi,
             on,
-            slack,
+            slack: [slack, delta],
         });
     }
 
@@ -249,6 +251,17 @@ impl Crack {
         }
     }
 
+    /// Nodes next to it that are no farther from its curve or plane [m].
+    pub fn nodes_within<'a>(
+        &'a self,
+        mesh: &'a Mesh,
+        reach: f64,
+    ) -> impl Iterator<Item = Point> + 'a {
+        let nodes = self.near.nodes.iter().zip(&self.near.phi);
+        let near = nodes.filter(move |node| node.1.abs() <= reach);
+        near.map(|node| mesh.nodes[*node.0 as usize])
+    }
+
     /// Nodes on it, in a solid on its plane, ascending.
     pub fn nodes_on(&self) -> &[u32] {
         &self.near.on
@@ -268,15 +281,15 @@ impl Crack {
         }
     }
 
-    /// φ of a place of a solid: 0 or at least [`DELTA`] of the smallest edge, the same for all cells [m].
+    /// φ of a place of a solid, 0 but for rounding: the same for all cells [m].
     pub fn level(&self, x: &Point) -> f64 {
-        snapped(self.distance(x), self.near.slack)
+        snapped(self.distance(x), self.near.slack[0])
     }
 
-    /// ψ of a place of a solid likewise, of a plane without a front −∞ [m].
+    /// ψ of a place of a solid, 0 or at least [`DELTA`] of the smallest edge; of a plane without a front −∞ [m].
     pub fn beyond(&self, x: &Point) -> f64 {
         match &self.geometry {
-            Geometry::Ellipse(e) => snapped(e.nearest(x).psi, self.near.slack),
+            Geometry::Ellipse(e) => snapped(e.nearest(x).psi, self.near.slack[1]),
             _ => f64::NEG_INFINITY,
         }
     }

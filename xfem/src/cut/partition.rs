@@ -113,7 +113,7 @@ impl Partition {
         let level = |x: &Point| crack.level(x);
         let mut halves: Vec<Option<usize>> = vec![None; self.parts.len()];
         for host in 0..self.parts.len() {
-            if !lives(crack, &self.parts[host]) {
+            if !lives(cracks, crack, &self.parts[host]) {
                 continue;
             }
             let mut sides = [Vec::new(), Vec::new()];
@@ -180,9 +180,12 @@ impl Partition {
 }
 
 /// Whether a crack reaches into a part, or ends on another one before.
-pub fn lives(crack: &Crack, part: &Part) -> bool {
-    let mut parents = crack.parents.iter();
-    parents.all(|p| part.side(p.crack).is_none_or(|s| s == p.side))
+pub fn lives(cracks: &[Crack], crack: &Crack, part: &Part) -> bool {
+    crack.parents.iter().all(|p| {
+        let of = |arm: usize| cracks[arm].number == cracks[p.crack].number;
+        let own = part.sides.iter().find(|side| of(side.0));
+        own.is_none_or(|own| own.1 == p.side)
+    })
 }
 
 /// Convex polygon of face corners on one side of a level.

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::geometry::Point;
+use crate::geometry::{Point, mean};
 use crate::mesh::Mesh;
 
 use super::crack::{Crack, crossings};
@@ -62,14 +62,24 @@ pub fn sheets(mesh: &Mesh, arm: usize, crack: &Crack) -> Vec<Sheet> {
 
 /// The numbers of two cracks among arms in a cell that lie in one place there.
 pub fn overlap(mesh: &Mesh, arms: &[Crack], cell: usize, own: &[usize]) -> Option<[usize; 2]> {
-    let places = |arm: &usize| crossings(&mesh.map(cell), &arms[*arm].cell_phi(mesh, cell));
+    let places = |arm: &usize| {
+        let corners = crossings(&mesh.map(cell), &arms[*arm].cell_phi(mesh, cell));
+        let mut places: Vec<Point> = corners.iter().map(|corner| corner.0).collect();
+        places.push(mean(&places));
+        places
+    };
     own.iter().enumerate().find_map(|(k, one)| {
         let places = (k + 1 < own.len()).then(|| places(one))?;
-        let on = |arm: &Crack| places.iter().all(|place| arm.level(&place.0) == 0.0);
+        let both = |arm: &Crack, x: &Point| arms[*one].beyond(x).max(arm.beyond(x)) < 0.0;
+        let on = |arm: &Crack| {
+            let along = places.iter().all(|x| arm.level(x) == 0.0);
+            along && places.iter().any(|x| both(arm, x))
+        };
         let numbers = |two: &usize| [*one, *two].map(|arm| arms[arm].number);
         let others = own[k + 1..].iter().filter(|two| on(&arms[**two]));
         let mut others = others.map(numbers);
-        others.find(|numbers| numbers[0] != numbers[1])
+        let found = others.find(|numbers| numbers[0] != numbers[1])?;
+        Some([found[0].min(found[1]), found[0].max(found[1])])
     })
 }
 
@@ -90,7 +100,7 @@ pub fn add_faces(
         // Sides of the region, but of cracks along the facet.
         let clipped = |cell: usize, region: usize, mut polygon: Vec<FaceCorner>| {
             let part = partitions.get(&cell).map(|own| &own.parts[region]);
-            if part.is_some_and(|part| !lives(crack, part)) {
+            if part.is_some_and(|part| !lives(arms, crack, part)) {
                 return Vec::new();
             }
             for &(other, side) in part.iter().flat_map(|part| &part.sides) {

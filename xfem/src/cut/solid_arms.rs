@@ -4,7 +4,7 @@ use crate::geometry::crack_shape::plane_frame;
 use crate::geometry::{Point, add_scaled, cross, dot, mean, norm, sub, unit};
 use crate::mesh::{Lengths, Mesh};
 
-use super::arrangement::{Arrangement, Moved};
+use super::arrangement::{Arrangement, DELTA, Moved};
 use super::crack::{Crack, Geometry, Parent};
 use super::is_split;
 use super::sheets::facet_on;
@@ -21,23 +21,18 @@ pub fn solid_arms(cracks: &[Crack], mesh: &Mesh, lengths: &Lengths) -> (Arrangem
     (found, done)
 }
 
-/// Lays the plane of a crack exactly through the nodes that are as good as on it, so that it stays flat: through three of them far from
-/// each other, or turned as little as may be. What was moved farthest. Nodes that no plane holds bend it.
+/// Lays the plane of a crack exactly through the nodes that are as good as on it: through three of them far from each other, or turned as
+/// little as may be. So it stays flat; it stays as it is where some place of it would move by more than [`DELTA`]. The node that it was
+/// moved to farthest.
 fn lay(crack: &mut Crack, mesh: &Mesh, lengths: &Lengths) -> Option<Moved> {
-    let nodes = crack.nodes_on().iter();
-    let nodes: Vec<Point> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+    let reach = DELTA * lengths.smallest;
+    let nodes: Vec<Point> = crack.nodes_within(mesh, reach).collect();
     let own = nodes.iter().map(|x| (*x, crack.distance(x)));
     let (to, away) = own.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     if away.abs() <= lengths.rounding {
         return None;
     }
     let normal = crack.frame(&to)[0];
-    let moved = Moved {
-        crack: crack.number,
-        from: add_scaled(&to, -away, &normal),
-        to,
-        joined: false,
-    };
     let farthest = |from: &dyn Fn(&Point) -> f64| {
         let places = nodes.iter().map(|x| (*x, from(x)));
         let found = places.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -57,8 +52,10 @@ fn lay(crack: &mut Crack, mesh: &Mesh, lengths: &Lengths) -> Option<Moved> {
         (Some(along), None) => unit(&add_scaled(&normal, -dot(&normal, &along), &along)),
         _ => normal,
     };
-    let on_plane = |x: &Point| add_scaled(x, -dot(&turned, &sub(x, &p)), &turned);
-    match &mut crack.geometry {
+    let beside = |x: &Point| dot(&turned, &sub(x, &p));
+    let on_plane = |x: &Point| add_scaled(x, -beside(x), &turned);
+    let mut laid = crack.geometry.clone();
+    match &mut laid {
         Geometry::Plane { origin, frame } => {
             (*origin, *frame) = (on_plane(origin), plane_frame(&turned));
         }
@@ -69,8 +66,23 @@ fn lay(crack: &mut Crack, mesh: &Mesh, lengths: &Lengths) -> Option<Moved> {
         }
         Geometry::Curve(_) => {}
     }
+    let [low, high] = match &crack.geometry {
+        Geometry::Ellipse(_) => crack.extents(),
+        _ => mesh.extents(),
+    };
+    let corner = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { low[a] } else { high[a] });
+    let mut corners = (0..8).map(corner);
+    if corners.any(|x| (beside(&x) - crack.distance(&x)).abs() > reach) {
+        return None;
+    }
+    crack.geometry = laid;
     crack.place(mesh, lengths, None);
-    Some(moved)
+    Some(Moved {
+        crack: crack.number,
+        from: add_scaled(&to, -away, &normal),
+        to,
+        joined: false,
+    })
 }
 
 /// Whether an arm may lie in a cell: on its side of the cracks that it ends on, where those do not divide the cell.
@@ -84,7 +96,10 @@ pub fn reaches(mesh: &Mesh, arms: &[Crack], arm: &Crack, cell: usize) -> bool {
 /// Arms of a plane or ellipse: its parts on both sides of the earlier planes that it crosses inside the body.
 fn plane_arms(crack: &Crack, earlier: &[Crack], mesh: &Mesh) -> Vec<Crack> {
     let mut parts = vec![crack.clone()];
-    for (index, other) in earlier.iter().enumerate() {
+    // All arms of a plane have its level.
+    let first = |k: usize| k == 0 || earlier[k - 1].number != earlier[k].number;
+    for index in (0..earlier.len()).filter(|&k| first(k)) {
+        let other = &earlier[index];
         if !matches!(other.geometry, Geometry::Plane { .. }) || !meet(crack, other, mesh) {
             continue;
         }

@@ -40,7 +40,7 @@ pub enum EnrichmentError {
         cell: f64,
     },
     /// The stiffness is singular to working precision beyond the motions of pieces, or those are not rigid: what was made one bent it.
-    #[error("crack {} nearly touches another, or itself, near {at:?}: this mesh does not tell how what lies between them moves", crack + 1)]
+    #[error("crack {} nearly touches another, itself or a side of the body, near {at:?}: this mesh does not tell how what lies between them moves", crack + 1)]
     Singular {
         /// Crack number, from 0.
         crack: usize,

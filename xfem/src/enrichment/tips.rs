@@ -191,6 +191,21 @@ impl Tips {
                 list.entry(cell).or_default().push(index);
             }
         }
+        let mut present = inside.clone();
+        let others = ending
+            .iter()
+            .flat_map(|(&cell, own)| own.iter().map(move |&arm| (cell, arm)));
+        let sheets_end = sheets.iter().filter(|sheet| !through(sheet));
+        let sheets_end = sheets_end.flat_map(|sheet| sheet.cells.map(|cell| (cell, sheet.arm)));
+        for (cell, arm) in others.chain(sheets_end) {
+            present.entry(cell).or_default().push(arm);
+        }
+        for (cell, own) in present {
+            if let Some(cracks) = overlap(mesh, arms, cell, &own) {
+                let at = mesh.centre(cell);
+                return Err(ArrangementError::Overlap { cracks, at });
+            }
+        }
         let mut tips = Tips::default();
         // All arms of an ellipse have one front.
         let mut fronts: BTreeMap<usize, (usize, BTreeSet<usize>)> = BTreeMap::new();
@@ -223,10 +238,6 @@ impl Tips {
         }
         for (cell, mut own) in inside {
             own.sort_unstable();
-            if let Some(cracks) = overlap(mesh, arms, cell, &own) {
-                let at = mesh.centre(cell);
-                return Err(ArrangementError::Overlap { cracks, at });
-            }
             let ends = ending.get(&cell).map_or(&[][..], Vec::as_slice);
             tips.partitions
                 .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
