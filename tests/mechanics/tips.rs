@@ -116,6 +116,36 @@ fn a_tip_within_rounding_of_an_edge_lies_on_it() {
     }
 }
 
+/// Goal: a tip beside another crack has its functions whichever crack comes first and however both are read.
+#[test]
+fn a_tip_beside_a_crack_has_its_functions_in_every_order() {
+    let (a, b) = ([2.14, 1.684], [7.0, 1.4]);
+    let (c, d) = ([-1.0, 2.6], [8.0, -0.26]);
+    let [own, other] = [(a, b), (b, a)].map(|(p, q)| {
+        [
+            crack(p, q, 0.6, "branch"),
+            crack(c, d, 0.6, "none"),
+            crack(d, c, 0.6, "none"),
+            crack(q, p, 0.6, "branch"),
+        ]
+    });
+    let held = support("\"bottom\"", "[0, 0]") + &support("\"top\"", "[1e-3, -1e-2]");
+    let unknowns = |cracks: [&String; 2]| {
+        let rest = cracks[0].clone() + cracks[1] + &held;
+        body(&plane([0.0, 0.0], [7.0, 5.0], [7, 5], &rest))
+            .elastic
+            .unknowns()
+    };
+    let counts = [
+        [&own[0], &own[1]],
+        [&own[1], &own[0]],
+        [&own[2], &own[3]],
+        [&other[0], &other[2]],
+        [&other[1], &other[0]],
+    ];
+    assert_eq!(counts.map(unknowns), [184; 5]);
+}
+
 /// Source: superposition of separate bodies. Goal: three cracks one above the other are numbered, placed and solved each
 /// on its own: points come in case order, equal cracks far apart carry equal forces, the order in the file does not
 /// matter to the answer. A plate 1 × 4 m, ν = 0, pushed and sheared uniformly along its height: all cracks see the same stress.

@@ -159,12 +159,17 @@ pub fn is_convex(polygon: &[Point]) -> bool {
     })
 }
 
-/// Triangles that fill a polygon: a fan of a convex one, ears of another.
+/// Triangles that fill a polygon: a fan of a convex one, ears of another. None of corners in line: what lies along one is not in it.
 pub fn triangles(polygon: &[Point]) -> Vec<[Point; 3]> {
-    if is_convex(polygon) {
-        return fan(polygon);
+    if !is_convex(polygon) {
+        return ears(polygon);
     }
-    ears(polygon)
+    let mut found = fan(polygon);
+    found.retain(|[a, b, c]| {
+        let longest = norm(&sub(b, a)).max(norm(&sub(c, a)));
+        doubled_area(a, b, c) > 1e-14 * longest * norm(&sub(c, b))
+    });
+    found
 }
 
 #[cfg(test)]
