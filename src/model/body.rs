@@ -1,6 +1,5 @@
 //! From a case to the contact system: the discretisation, then K and B over the free unknowns.
 
-use std::collections::BTreeSet;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 use std::time::Instant;
@@ -113,11 +112,8 @@ impl Body {
             setup.traction_s = clock.elapsed().as_secs_f64();
         }
         let elastic = system(&discrete, reduced, needs, &traction_rows, &mut setup);
-        let elastic = match elastic {
-            // Pieces are found by what cracks leave whole: their motions are rigid unless a crack was bent.
-            Err(error) => return Err(singular(case, &discrete, error)),
-            Ok(elastic) => elastic,
-        };
+        // Pieces are found by what cracks leave whole: their motions are rigid unless a crack was bent.
+        let elastic = elastic.map_err(|error| singular(case, &discrete, error))?;
         let loads = fixed_loads(
             case,
             &discrete.integrator(),
@@ -155,9 +151,8 @@ impl Body {
             .iter()
             .filter(|f| f.kind != FunctionKind::Standard);
         enriched.for_each(|f| near[f.node as usize] = true);
-        let cells = (0..mesh.cell_count()).map(|cell| mesh.cell(cell));
-        let nodes = cells.filter(|nodes| nodes.iter().any(|&n| near[n as usize]));
-        let nodes: BTreeSet<u32> = nodes.flatten().copied().collect();
+        let cut = |cell: &usize| mesh.cell(*cell).iter().any(|&n| near[n as usize]);
+        let nodes = mesh.nodes_of((0..mesh.cell_count()).filter(cut));
         let numbers = self.solver_numbers.iter().enumerate();
         let own = numbers.filter(|(i, _)| nodes.contains(&functions[i / mesh.dim()].node));
         let mut own: Vec<usize> = own.filter_map(|(_, n)| Some((*n)? as usize)).collect();
@@ -183,23 +178,22 @@ impl Body {
 
 /// A fault of the stiffness, at the crack next to it.
 fn singular(case: &Case, discrete: &Discretisation, error: MethodError) -> BodyError {
-    let unknown = match error {
-        MethodError::NotPositiveDefinite { unknown, .. }
-        | MethodError::NotRigid { unknown, .. } => Some(unknown),
-        _ => None,
+    let (MethodError::NotPositiveDefinite { unknown, .. } | MethodError::NotRigid { unknown, .. }) =
+        error
+    else {
+        return error.into();
     };
-    let own = |number: &Option<u32>| number.map(|n| n as usize) == unknown;
-    let place = unknown.and_then(|_| discrete.solver_numbers.iter().position(own));
+    let own = |number: &Option<u32>| number.is_some_and(|n| n as usize == unknown);
+    let place = discrete.solver_numbers.iter().position(own);
     let function = place.map(|i| discrete.enrichment.functions[i / discrete.mesh.dim()]);
     let at = function.map(|f| discrete.mesh.nodes[f.node as usize]);
-    let found = at.and_then(|at| Some((discrete.nearest(&at)?, at)));
-    found.map_or_else(
-        || error.into(),
-        |(crack, at)| {
+    match at.and_then(|at| Some((discrete.nearest(&at)?, at))) {
+        Some((crack, at)) => {
             let cell = 0.5 * discrete.mesh.smallest_edge();
             crack_error(case, &EnrichmentError::Singular { crack, at, cell }).into()
-        },
-    )
+        }
+        None => error.into(),
+    }
 }
 
 /// K, B and, where a method needs it, the traction operator over the free unknowns, with the order in which K is factored.

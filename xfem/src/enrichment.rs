@@ -82,11 +82,11 @@ pub struct Enrichment {
 }
 
 impl Enrichment {
-    /// Enriches the nodes around the given arms; those of a solid may not run along cell facets. `beside`: places next to nodes on a
+    /// Enriches the nodes around the given arms. `beside`: places next to nodes on a
     /// crack, on the side of it whose piece is the node's own; by default that is side 1.
     ///
     /// # Errors
-    /// A crack wholly outside, along a cell facet, or one that leaves a cell no clean parts.
+    /// A crack wholly outside, two in one place, or one that leaves a cell no clean parts.
     pub fn new(
         mesh: &Mesh,
         lengths: &Lengths,
@@ -110,15 +110,13 @@ impl Enrichment {
             }
         }
         let mut cut_by = vec![Vec::new(); cracks.len()];
+        let mut hosts: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
         for (&cell, partition) in &tips.partitions {
             let own: BTreeSet<usize> = partition.faces.iter().map(|f| f.crack).collect();
             own.into_iter().for_each(|crack| cut_by[crack].push(cell));
-        }
-        let mut hosts: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
-        for face in tips.partitions.values().flat_map(|p| &p.faces) {
-            let [one, two] = face.sides.map(|side| side.0);
-            if one != two {
-                hosts.entry(two).or_default().insert(one);
+            let others = partition.faces.iter().map(|f| f.sides[1].0);
+            for other in others.filter(|&other| other != cell) {
+                hosts.entry(other).or_default().insert(cell);
             }
         }
         let pieces = support_pieces(mesh, cracks, &arrangement, &tips, beside);

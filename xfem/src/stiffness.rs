@@ -3,6 +3,7 @@
 pub mod assembly;
 pub mod assumed_stress;
 pub mod block_matrix;
+pub mod border;
 pub mod cell_matrices;
 pub mod cell_matrix;
 pub mod consistent;

@@ -304,8 +304,7 @@ impl<'a> Others<'a> {
     }
 }
 
-/// Merges points into the nearest others of their arms, or of any arm if `anywhere`; what has no other stays. The arms, and how
-/// many points went.
+/// Merges points into the nearest others of their arms; what has no other stays. The arms, and how many points went.
 pub fn merge(
     surface: &mut ContactSurface,
     arms: &[std::ops::Range<usize>],

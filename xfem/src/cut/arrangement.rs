@@ -26,7 +26,7 @@ use crate::geometry::polygon::bends;
 use crate::mesh::{Lengths, Mesh};
 
 use self::around::Around;
-pub use self::ends::JOINED;
+use self::ends::JOINED;
 use self::snap::Net;
 pub use self::walk::{Chain, TracedTip};
 use super::crack::{Crack, Geometry, on_crack};
@@ -39,7 +39,7 @@ pub const DELTA: f64 = 1e-6;
 /// beside a node is drawn through it at any angle.
 const LINE: f64 = 1.0 / 30.0;
 
-/// What is this near to a cell, or to a radius around a place, counts as within, in shortest edges: a part of [`JOINED`] that lies between
+/// What is this near to a cell, or to a radius around a place, counts as within, in shortest edges: a part of `JOINED` that lies between
 /// no coordinates which users type, so that rounding decides nothing.
 pub const WITHIN: f64 = 0.618 * JOINED;
 

@@ -252,14 +252,10 @@ impl Crack {
     }
 
     /// Nodes next to it that are no farther from its curve or plane [m].
-    pub fn nodes_within<'a>(
-        &'a self,
-        mesh: &'a Mesh,
-        reach: f64,
-    ) -> impl Iterator<Item = Point> + 'a {
+    pub fn nodes_within(&self, mesh: &Mesh, reach: f64) -> Vec<Point> {
         let nodes = self.near.nodes.iter().zip(&self.near.phi);
-        let near = nodes.filter(move |node| node.1.abs() <= reach);
-        near.map(|node| mesh.nodes[*node.0 as usize])
+        let near = nodes.filter(|node| node.1.abs() <= reach);
+        near.map(|node| mesh.nodes[*node.0 as usize]).collect()
     }
 
     /// Nodes on it, in a solid on its plane, ascending.

@@ -5,7 +5,7 @@
 //!   branching      { 1+ 2+ }, { 1+ 2− }, { 1− }             the second crack ends on the first
 //! ```
 //!
-//! In 2D parts are simple polygons cut along chains of segments ([`super::flat`]); in 3D tetrahedra clipped by planes, crack
+//! In 2D parts are simple polygons cut along chains of segments ([`super::regions`]); in 3D tetrahedra clipped by planes, crack
 //! by crack: each divides those parts of the cell on which it lives. Slivers keep their relative size.
 
 use crate::geometry::clip::{Side, clip_tetrahedron, clip_with, crossing};

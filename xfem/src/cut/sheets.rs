@@ -75,11 +75,10 @@ pub fn overlap(mesh: &Mesh, arms: &[Crack], cell: usize, own: &[usize]) -> Optio
             let along = places.iter().all(|x| arm.level(x) == 0.0);
             along && places.iter().any(|x| both(arm, x))
         };
-        let numbers = |two: &usize| [*one, *two].map(|arm| arms[arm].number);
-        let others = own[k + 1..].iter().filter(|two| on(&arms[**two]));
-        let mut others = others.map(numbers);
-        let found = others.find(|numbers| numbers[0] != numbers[1])?;
-        Some([found[0].min(found[1]), found[0].max(found[1])])
+        let mut others = own[k + 1..].iter().map(|two| &arms[*two]);
+        let first = arms[*one].number;
+        let second = others.find(|two| two.number != first && on(two))?.number;
+        Some([first.min(second), first.max(second)])
     })
 }
 

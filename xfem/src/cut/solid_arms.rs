@@ -26,7 +26,7 @@ pub fn solid_arms(cracks: &[Crack], mesh: &Mesh, lengths: &Lengths) -> (Arrangem
 /// moved to farthest.
 fn lay(crack: &mut Crack, mesh: &Mesh, lengths: &Lengths) -> Option<Moved> {
     let reach = DELTA * lengths.smallest;
-    let nodes: Vec<Point> = crack.nodes_within(mesh, reach).collect();
+    let nodes = crack.nodes_within(mesh, reach);
     let own = nodes.iter().map(|x| (*x, crack.distance(x)));
     let (to, away) = own.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     if away.abs() <= lengths.rounding {

@@ -62,10 +62,8 @@ pub(super) fn faces(
             let lost = rank::dependent(&arms, |_| 1.0, |k| rows(&surface, k), rank::SINGULAR);
             if let Some(&point) = lost.first() {
                 let own = arms.iter().find(|arm| arm.contains(&point)).cloned();
-                let measure: f64 = own
-                    .unwrap_or_default()
-                    .map(|k| surface.points[k].weight)
-                    .sum();
+                let own = own.unwrap_or_default();
+                let measure: f64 = own.map(|k| surface.points[k].weight).sum();
                 let (crack, at) = (surface.points[point].crack, surface.points[point].x);
                 let third = measure.powf(1.0 / (dim as f64 - 1.0)) / 3.0;
                 // Those at hand do not do.

@@ -10,20 +10,19 @@
 pub mod corners;
 mod ends;
 mod room;
+mod solid;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use self::corners::Corner;
-use crate::cut::arrangement::{Arrangement, ArrangementError, Chain, WITHIN};
+use crate::cut::arrangement::{Arrangement, Chain};
 use crate::cut::crack::{Crack, End, Tip};
 use crate::cut::part::Face;
 use crate::cut::partition::{BorderPiece, Partition};
-use crate::cut::placement::{self, Along, front_frame};
+use crate::cut::placement;
 use crate::cut::regions;
-use crate::cut::sheets::{Sheet, add_faces, overlap, sheets};
-use crate::cut::solid_arms::reaches;
 use crate::geometry::boxes::Boxes;
 use crate::geometry::curve::turned;
 use crate::geometry::segments::Segments;
@@ -35,7 +34,7 @@ use crate::mesh::{Facet, Lengths, Mesh};
 use super::basis::{Function, FunctionKind};
 use super::error::EnrichmentError;
 use super::supports::Joiner;
-use super::zone::{Zone, front_room};
+use super::zone::Zone;
 
 /// The radius that the program chooses, in parts of the room around a tip: its crack, other cracks, the border.
 const SHARE: f64 = 0.25;
@@ -149,7 +148,7 @@ impl Tips {
             }
         }
         for &arm in &search.pairs {
-            let cells: Vec<usize> = search.cells_of(arm);
+            let cells: Vec<usize> = search.cells_of(arm, 0.0);
             let own = search.tips_of[arm].iter().map(|&t| &arrangement.tips[t]);
             let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
             let mut zone = Zone::plain(mesh.nodes_of(cells));
@@ -158,125 +157,6 @@ impl Tips {
         }
         search.add_corners(&mut tips);
         (tips.partitions, tips.parted) = (search.partitions, search.parted);
-        tips.cells.sort_unstable();
-        Ok(tips)
-    }
-
-    /// Divides the cells of a solid.
-    ///
-    /// # Errors
-    /// Two cracks in one place.
-    pub fn solid(mesh: &Mesh, lengths: &Lengths, arms: &[Crack]) -> Result<Self, ArrangementError> {
-        let mut inside: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let mut ending: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let arms_of = arms.iter().enumerate();
-        let sheets: Vec<Sheet> = arms_of
-            .flat_map(|(index, crack)| sheets(mesh, index, crack))
-            .filter(|sheet| reaches(mesh, arms, &arms[sheet.arm], sheet.cells[0]))
-            .collect();
-        let through = |sheet: &&Sheet| sheet.along == Along::Through;
-        for sheet in sheets.iter().filter(through) {
-            for cell in sheet.cells {
-                inside.entry(cell).or_default().push(sheet.arm);
-            }
-        }
-        for (index, crack) in arms.iter().enumerate() {
-            let cells = crack.cells().iter().copied();
-            for cell in cells.filter(|&cell| reaches(mesh, arms, crack, cell)) {
-                let list = match placement::along(mesh, crack, cell) {
-                    Along::Through => &mut inside,
-                    Along::Ends => &mut ending,
-                    Along::Away => continue,
-                };
-                list.entry(cell).or_default().push(index);
-            }
-        }
-        let mut present = inside.clone();
-        let others = ending
-            .iter()
-            .flat_map(|(&cell, own)| own.iter().map(move |&arm| (cell, arm)));
-        let sheets_end = sheets.iter().filter(|sheet| !through(sheet));
-        let sheets_end = sheets_end.flat_map(|sheet| sheet.cells.map(|cell| (cell, sheet.arm)));
-        for (cell, arm) in others.chain(sheets_end) {
-            present.entry(cell).or_default().push(arm);
-        }
-        for (cell, own) in present {
-            if let Some(cracks) = overlap(mesh, arms, cell, &own) {
-                let at = mesh.centre(cell);
-                return Err(ArrangementError::Overlap { cracks, at });
-            }
-        }
-        let mut tips = Tips::default();
-        // All arms of an ellipse have one front.
-        let mut fronts: BTreeMap<usize, (usize, BTreeSet<usize>)> = BTreeMap::new();
-        let within = ending
-            .iter()
-            .flat_map(|(&cell, own)| own.iter().map(move |&i| (i, cell)));
-        let ends = sheets.iter().filter(|sheet| sheet.along == Along::Ends);
-        let beside = ends.flat_map(|sheet| sheet.cells.map(|cell| (sheet.arm, cell)));
-        for (index, cell) in within
-            .chain(beside)
-            .filter(|(i, _)| arms[*i].tip != Tip::None)
-        {
-            let front = fronts.entry(arms[index].number);
-            let own = front.or_insert_with(|| (index, BTreeSet::new()));
-            own.1.insert(cell);
-        }
-        for (&cell, own) in &ending {
-            let (with, without): (Vec<usize>, Vec<usize>) =
-                own.iter().partition(|&&i| arms[i].tip != Tip::None);
-            if !with.is_empty() {
-                inside.entry(cell).or_default().extend(with);
-            }
-            if !without.is_empty() {
-                let mut all = inside.get(&cell).cloned().unwrap_or_default();
-                all.extend(without);
-                all.sort_unstable();
-                tips.endings
-                    .insert(cell, Partition::solid(mesh, cell, arms, &all, &[]));
-            }
-        }
-        for (cell, mut own) in inside {
-            own.sort_unstable();
-            let ends = ending.get(&cell).map_or(&[][..], Vec::as_slice);
-            tips.partitions
-                .insert(cell, Partition::solid(mesh, cell, arms, &own, ends));
-        }
-        let kept = |sheet: &&Sheet| through(sheet) || arms[sheet.arm].tip != Tip::None;
-        let kept: Vec<&Sheet> = sheets.iter().filter(kept).collect();
-        add_faces(mesh, arms, &kept, &mut tips.partitions);
-        let mut near = None;
-        for (index, cells) in fronts.into_values() {
-            let Some(frame) = front_frame(index, &arms[index]) else {
-                continue;
-            };
-            let cells: Vec<usize> = cells.into_iter().collect();
-            let at_front = mesh.nodes_of(cells.iter().copied());
-            let radius = match (arms[index].tip, &frame.shape) {
-                (Tip::Radius(radius), _) => Some(radius),
-                (Tip::Auto, FrontShape::Ellipse(e)) => {
-                    Some(SHARE * front_room(mesh, arms, &arms[index], e))
-                }
-                _ => None,
-            };
-            let own = |cell: &usize| {
-                let divided = tips.partitions.get(cell);
-                let mut faces = divided.iter().flat_map(|p| &p.faces);
-                faces.all(|f| arms[f.crack].number == arms[index].number)
-            };
-            let mut zone = match radius {
-                Some(radius) => {
-                    let near = near.get_or_insert_with(|| Neighbours::new(mesh));
-                    let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
-                    let at_front = (at_front, WITHIN * lengths.smallest);
-                    Zone::widest(mesh, near, &frame, radius, at_front, free)
-                }
-                None => Zone::plain(at_front),
-            };
-            let shared = |&arm: &usize| arms[arm].number == arms[index].number;
-            zone.arms = (0..arms.len()).filter(shared).collect();
-            tips.add(frame, &cells, zone);
-        }
         tips.cells.sort_unstable();
         Ok(tips)
     }
@@ -479,17 +359,8 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Cells that an arm runs through, along or ends in.
-    fn cells_of(&self, arm: usize) -> Vec<usize> {
-        self.cells_with(arm, 0.0)
-    }
-
-    /// Those of them that it does not only touch.
-    fn cells_along(&self, arm: usize) -> Vec<usize> {
-        self.cells_with(arm, WITHIN * self.lengths.smallest)
-    }
-
-    fn cells_with(&self, arm: usize, least: f64) -> Vec<usize> {
+    /// Cells that an arm runs through, along or ends in for no less than a length [m].
+    fn cells_of(&self, arm: usize, least: f64) -> Vec<usize> {
         let own = self.chains_of[arm].iter();
         let own = own.filter(|(_, chain)| chain.range[1] - chain.range[0] >= least);
         let beside =
@@ -544,7 +415,7 @@ impl Search<'_> {
     fn add_pairs(&mut self) -> bool {
         for (index, arm) in self.arms.iter().enumerate() {
             let own = self.tips_of[index].iter().filter(|&&t| !self.kept[t]);
-            let cells = self.cells_of(index);
+            let cells = self.cells_of(index, 0.0);
             let alone = cells.iter().all(|cell| {
                 let chains = self.arrangement.chains.get(cell);
                 let mut chains = chains.into_iter().flatten();

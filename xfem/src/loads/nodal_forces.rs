@@ -13,8 +13,8 @@ use crate::enrichment::cell_facets::{Piece, pieces};
 use crate::geometry::clip::fan;
 use crate::geometry::{Point, cross, dot, norm, sub};
 use crate::quadrature::{WeightedPoint, gauss_map, segment, triangle, triangle_collapsed};
+use crate::stiffness::border::outward;
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
-use crate::stiffness::consistent::outward;
 
 use super::border::{Border, BorderPart, Parts, Region};
 

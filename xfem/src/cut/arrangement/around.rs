@@ -86,6 +86,21 @@ impl<'a> Around<'a> {
         found.into_iter().map(|k| self.edges[k])
     }
 
+    /// Those of them on the border of the body.
+    pub fn sides_near(
+        &self,
+        points: &[Point],
+        margin: f64,
+    ) -> impl Iterator<Item = [u32; 2]> + use<'_, 'a> {
+        let edges = self.edges_near(points, margin);
+        edges.filter(|edge| self.is_side(edge))
+    }
+
+    /// Whether an edge lies on the border of the body.
+    fn is_side(&self, edge: &[u32; 2]) -> bool {
+        self.cells_with(edge).len() < 2
+    }
+
     /// Nodes in that box.
     pub fn nodes_near(
         &self,
@@ -179,9 +194,9 @@ impl<'a> Around<'a> {
                 let cells = self.cells_with(&[node]);
                 let edges = cells.iter().flat_map(|&cell| self.edges_of(cell));
                 let mut own = edges.filter(|edge| edge.contains(&node));
-                own.any(|edge| self.cells_with(&edge).len() < 2)
+                own.any(|edge| self.is_side(&edge))
             }
-            On::Edge(edge) => self.cells_with(&edge).len() < 2,
+            On::Edge(edge) => self.is_side(&edge),
             On::Cell(_) => false,
             On::Outside => true,
         }

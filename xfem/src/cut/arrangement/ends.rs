@@ -16,7 +16,7 @@ use super::{BEND, DELTA, LINE};
 
 /// An end or a bend closer than this to another crack, to another end or to a side of the body is joined with it, in units of the
 /// shortest edge: nobody gives a point on a slanted crack to all digits. Farther away what lies between stays a ligament.
-pub const JOINED: f64 = 1e-2;
+pub(super) const JOINED: f64 = 1e-2;
 
 /// How far an end is followed to where it really crosses, in the same units: so it keeps its direction.
 const FOLLOWED: f64 = 10.0 * JOINED;
@@ -35,6 +35,16 @@ struct End {
     ahead: Point,
 }
 
+impl End {
+    /// Where the line of the end crosses a segment p q: how far ahead [m], and how far along, in parts of it.
+    fn passes(&self, [p, q]: [&Point; 2]) -> Option<(f64, f64)> {
+        let (d, from) = (sub(q, p), sub(p, &self.x));
+        let turn = cross(&self.ahead, &d)[2];
+        let [t, share] = [&d, &self.ahead].map(|v| cross(&from, v)[2] / turn);
+        (0.0..=1.0).contains(&share).then_some((t, share))
+    }
+}
+
 /// Joins the ends and bends of polylines with what they nearly touch, all as they were put: by no order. Those that were moved: which
 /// line, from where and to where [m].
 pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize, Point, Point)> {
@@ -45,7 +55,8 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
         .filter(inside)
         .collect();
     let boxes = Boxes::new(lines.iter().map(|line| self::around(line, JOINED * size)));
-    let mut moved = Vec::new();
+    let place = |end: &End| [0, lines[end.line].len() - 1][usize::from(end.last)];
+    let mut led: Vec<(usize, usize, Point)> = Vec::new();
     for group in groups(&ends, size) {
         let own: Vec<usize> = group.iter().map(|end| end.line).collect();
         let met = group.iter().filter_map(|end| {
@@ -57,24 +68,20 @@ pub(super) fn join(around: &Around<'_>, lines: &mut [Vec<Point>]) -> Vec<(usize,
             places.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal))
         });
         let middle = mean(&group.iter().map(|end| end.x).collect::<Vec<_>>());
-        let away = |x: &Point| norm(&sub(x, &middle));
-        let met = met.min_by(|a, b| away(a).total_cmp(&away(b)));
-        let common = met.or_else(|| Some(onto_side(around, common_place(&group, size)?)));
+        let met = nearest_of(met, &middle);
+        // On the side of the body, where that is beside.
+        let common = met.or_else(|| {
+            let x = common_place(&group, size)?;
+            Some(side_beside(around, &x).map_or(x, |foot| foot.1))
+        });
         for end in &group {
-            if let Some(to) = common.or_else(|| way_out(around, end)) {
-                // A place that was put there keeps its digits.
-                if norm(&sub(&to, &end.x)) > around.lengths.rounding {
-                    moved.push((*end, to));
-                }
-            }
+            let to = common.or_else(|| way_out(around, end));
+            led.extend(to.map(|to| (end.line, place(end), to)));
         }
     }
-    let place = |end: &End| [0, lines[end.line].len() - 1][usize::from(end.last)];
-    let led = moved.iter().map(|(end, to)| (end.line, place(end), *to));
-    let bends = bends_beside(around, lines, &ends).into_iter();
-    let bends =
-        bends.filter(|(line, k, to)| norm(&sub(to, &lines[*line][*k])) > around.lengths.rounding);
-    let led: Vec<(usize, usize, Point)> = led.chain(bends).collect();
+    led.extend(bends_beside(around, lines, &ends));
+    // A place that was put there keeps its digits.
+    led.retain(|(line, k, to)| norm(&sub(to, &lines[*line][*k])) > around.lengths.rounding);
     let moved = led
         .iter()
         .map(|&(line, k, to)| (line, lines[line][k], to))
@@ -130,7 +137,7 @@ fn groups(ends: &[End], size: f64) -> Vec<Vec<End>> {
 fn met(around: &Around<'_>, end: &End, points: &[Point]) -> Option<Point> {
     let size = around.lengths.smallest;
     let close = |w: &&[Point]| segment_distance(&end.x, &w[0], &w[1]) <= FOLLOWED * size;
-    let mut segments = points.windows(2).filter(close);
+    let segments = points.windows(2).filter(close);
     let away = |w: &[Point]| segment_distance(&end.x, &w[0], &w[1]);
     let nearest = segments.clone().map(away).fold(f64::INFINITY, f64::min);
     if nearest > JOINED * size {
@@ -138,36 +145,31 @@ fn met(around: &Around<'_>, end: &End, points: &[Point]) -> Option<Point> {
     }
     // It lies there: what it runs through is snapped to it.
     let lies_there = nearest <= LINE * DELTA * size;
-    let places = segments.by_ref().filter_map(|w| {
-        let (d, from) = (sub(&w[1], &w[0]), sub(&w[0], &end.x));
-        let turn = cross(&end.ahead, &d)[2];
-        let [t, share] = [
-            cross(&from, &d)[2] / turn,
-            cross(&from, &end.ahead)[2] / turn,
-        ];
-        let inside = (0.0..=1.0).contains(&share) && t.abs() <= FOLLOWED * size;
-        inside.then(|| add_scaled(&w[0], share, &d))
+    let places = segments.filter_map(|w| {
+        let (t, share) = end.passes([&w[0], &w[1]])?;
+        (t.abs() <= FOLLOWED * size).then(|| add_scaled(&w[0], share, &sub(&w[1], &w[0])))
     });
-    let first = |places: &mut dyn Iterator<Item = Point>, from: &Point| {
-        let away = |x: &Point| norm(&sub(x, from));
-        places.min_by(|a, b| away(a).total_cmp(&away(b)))
-    };
     let crossing = match lies_there {
         true => Some(end.x),
-        false => first(&mut { places }, &end.x),
+        false => nearest_of(places, &end.x),
     };
     // It passes a bend of the other; beside a straight part it ends alone.
     let from = crossing.unwrap_or(end.x);
     let bends = points.windows(3).filter(|w| bend(w) > BEND).map(|w| w[1]);
-    let sides = around.edges_near(&[from], JOINED * size);
-    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+    let sides = around.sides_near(&[from], JOINED * size);
     let mouths = sides.flat_map(|edge| {
         let side = edge.map(|node| *around.at(node));
         let meets = move |w: &[Point]| Some(crossed([&w[0], &w[1]], [&side[0], &side[1]], 0.0)?.1);
         points.windows(2).filter_map(meets).collect::<Vec<_>>()
     });
     let beside = |x: &Point| norm(&sub(x, &from)) <= JOINED * size;
-    first(&mut bends.chain(mouths).filter(beside), &from).or(crossing)
+    nearest_of(bends.chain(mouths).filter(beside), &from).or(crossing)
+}
+
+/// The nearest of some places to one, of equals the first.
+fn nearest_of(places: impl Iterator<Item = Point>, from: &Point) -> Option<Point> {
+    let away = |x: &Point| norm(&sub(x, from));
+    places.min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 /// By how much a polyline turns at the middle one of three points [rad].
@@ -206,11 +208,8 @@ fn bends_beside(
     let close = |x: &Point, y: &Point| norm(&sub(x, y)) <= JOINED * size;
     let led = |&(line, k, x): &(usize, usize, Point)| {
         let here = self::around(&[x], JOINED * size);
-        if tips
-            .meeting(&here)
-            .into_iter()
-            .any(|end| close(&ends[end].x, &x))
-        {
+        let mut near = tips.meeting(&here).into_iter();
+        if near.any(|end| close(&ends[end].x, &x)) {
             return None;
         }
         // What runs beside one of its legs stays apart.
@@ -222,23 +221,17 @@ fn bends_beside(
             let near = |leg: &Point| foot(leg, &lines[other]).is_some_and(|f| f.0 <= JOINED * size);
             other != line && legs.iter().any(near)
         };
-        let others = places
-            .meeting(&here)
-            .into_iter()
-            .filter(|&other| close(&all[other].2, &x) && !apart(all[other].0));
+        let near = places.meeting(&here).into_iter();
+        let others = near.filter(|&k| close(&all[k].2, &x) && !apart(all[k].0));
         let others: Vec<Point> = others.map(|other| all[other].2).collect();
         if others.len() > 1 {
             return Some((line, k, mean(&others)));
         }
-        let near = boxes
-            .meeting(&[x; 2])
-            .into_iter()
-            .filter(|&other| other != line && !apart(other));
+        let near = boxes.meeting(&[x; 2]).into_iter();
+        let near = near.filter(|&other| other != line && !apart(other));
         let feet = near.filter_map(|other| foot(&x, &lines[other]));
-        let sides = around.edges_near(&[x], JOINED * size);
-        let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
-        let sides = sides.filter_map(|edge| foot(&x, &edge.map(|node| *around.at(node))));
-        let nearest = feet.chain(sides).min_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = feet.chain(side_beside(around, &x));
+        let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
         let (_, to) = nearest.filter(|(away, _)| *away <= JOINED * size)?;
         Some((line, k, to))
     };
@@ -264,16 +257,13 @@ fn common_place(group: &[End], size: f64) -> Option<Point> {
     Some(mean(&crossings))
 }
 
-/// A place, or that on the side of the body which it nearly touches.
-fn onto_side(around: &Around<'_>, x: Point) -> Point {
+/// The nearest place on a side of the body that a place nearly touches, with its distance [m].
+fn side_beside(around: &Around<'_>, x: &Point) -> Option<(f64, Point)> {
     let reach = JOINED * around.lengths.smallest;
-    let sides = around.edges_near(&[x], reach);
-    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
-    let feet = sides.filter_map(|edge| foot(&x, &edge.map(|node| *around.at(node))));
+    let sides = around.sides_near(&[*x], reach);
+    let feet = sides.filter_map(|edge| foot(x, &edge.map(|node| *around.at(node))));
     let nearest = feet.min_by(|a, b| a.0.total_cmp(&b.0));
-    nearest
-        .filter(|foot| foot.0 <= reach)
-        .map_or(x, |foot| foot.1)
+    nearest.filter(|foot| foot.0 <= reach)
 }
 
 fn is_near(end: &End, x: &Point, size: f64) -> bool {
@@ -291,18 +281,12 @@ fn crossing(one: &End, two: &End, size: f64) -> Option<Point> {
 /// Where an end that nearly touches a side of the body leaves it.
 fn way_out(around: &Around<'_>, end: &End) -> Option<Point> {
     let size = around.lengths.smallest;
-    let sides = around.edges_near(&[end.x], JOINED * size);
-    let sides = sides.filter(|edge| around.cells_with(edge).len() < 2);
+    let sides = around.sides_near(&[end.x], JOINED * size);
     let before = sides.filter_map(|edge| {
         let [p, q] = edge.map(|node| around.at(node));
-        let (d, from) = (sub(q, p), sub(p, &end.x));
-        let turn = cross(&end.ahead, &d)[2];
-        let [t, share] = [
-            cross(&from, &d)[2] / turn,
-            cross(&from, &end.ahead)[2] / turn,
-        ];
         let close = segment_distance(&end.x, p, q) <= JOINED * size;
-        (close && (0.0..=1.0).contains(&share) && t > 0.0).then_some(t)
+        let (t, _) = end.passes([p, q]).filter(|_| close)?;
+        (t > 0.0).then_some(t)
     });
     let nearest = before.fold(f64::INFINITY, f64::min);
     (nearest <= FOLLOWED * size).then(|| add_scaled(&end.x, nearest, &end.ahead))

@@ -327,9 +327,8 @@ impl<'a> Net<'a> {
         let mut inserts = Inserts::new();
         for (l, k, own) in self.segments() {
             let [u, v] = own.map(|i| self.vertices[i]);
-            for edge in self.around.edges_near(&[u.x, v.x], 0.0) {
-                let inner = self.around.cells_with(&edge).len() > 1;
-                if inner || lies_on(u.on, edge) || lies_on(v.on, edge) {
+            for edge in self.around.sides_near(&[u.x, v.x], 0.0) {
+                if lies_on(u.on, edge) || lies_on(v.on, edge) {
                     continue;
                 }
                 let [a, b] = edge.map(|node| self.around.at(node));

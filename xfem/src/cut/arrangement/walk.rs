@@ -8,6 +8,7 @@ use crate::geometry::curve::{Curve, turned};
 use crate::geometry::polygon::bends;
 use crate::geometry::{Point, cross, dot, norm, sub, unit};
 
+use super::ends::bend;
 use super::snap::{Net, lies_on};
 use super::{Arrangement, BEND, Line, On, Vertex};
 
@@ -153,10 +154,6 @@ pub(super) fn arms(net: &mut Net<'_>, cracks: &[Crack], found: &mut Arrangement)
 fn parted(net: &Net<'_>, line: &Line, places: &[Point], uses: &[usize]) -> Vec<(usize, End)> {
     let last = line.links.len() - 1;
     let closed = line.links[0].vertex == line.links[last].vertex;
-    let turn = |k: usize| {
-        let [a, b] = [k - 1, k].map(|i| unit(&sub(&places[i + 1], &places[i])));
-        cross(&a, &b)[2].atan2(dot(&a, &b)).abs()
-    };
     let end = |(k, link): (usize, &super::Link)| {
         let inner = k > 0 && k < last;
         if uses[link.vertex] > 1 || link.foot {
@@ -167,7 +164,7 @@ fn parted(net: &Net<'_>, line: &Line, places: &[Point], uses: &[usize]) -> Vec<(
             let outer = net.around.is_outer(net.vertices[link.vertex].on);
             Some((k, if outer { End::Mouth } else { End::Free }))
         } else {
-            (link.given && turn(k) > BEND).then_some((k, End::Bend))
+            (link.given && bend(&places[k - 1..=k + 1]) > BEND).then_some((k, End::Bend))
         }
     };
     line.links.iter().enumerate().filter_map(end).collect()

@@ -24,7 +24,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use crate::cut::arrangement::{BEND, On, TracedTip};
+use crate::cut::arrangement::{BEND, On, TracedTip, WITHIN};
 use crate::cut::crack::{End, Geometry, Tip};
 use crate::geometry::boxes::around;
 use crate::geometry::curve::{Curve, turned};
@@ -299,9 +299,10 @@ impl Search<'_> {
 
     /// The arms whose functions every node carries: those beside it, and one more.
     fn sets(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> Vec<(u32, usize)> {
-        let cells: Vec<BTreeSet<usize>> = (arms.iter())
-            .map(|arm| self.cells_along(arm.frame.crack).into_iter().collect())
-            .collect();
+        // What an arm only touches is not beside it.
+        let least = WITHIN * self.lengths.smallest;
+        let cells = arms.iter().map(|arm| self.cells_of(arm.frame.crack, least));
+        let cells: Vec<BTreeSet<usize>> = cells.map(|own| own.into_iter().collect()).collect();
         let beside = |node: u32, arm: usize| {
             let around = self.near.cells_around(&BTreeSet::from([node]));
             !around.is_disjoint(&cells[arm])
