@@ -27,9 +27,12 @@ pub fn slice_points(
     let area = |(p, q): (Point, Point)| dot(along, &cross(&sub(&p, &tip), &sub(&q, &tip)));
     let areas: Vec<f64> = edges(slice).map(area).collect();
     let turn = areas.iter().sum::<f64>().signum();
+    let lost = rounding(slice);
     let inside = edges(slice).zip(&areas).all(|((p, q), area)| {
-        // Distance of the tip from the edge, positive inwards; rounding counts as the closure.
-        area * turn >= -1e-12 * size * norm(&sub(&p, &q))
+        // Distance of the tip from the edge, positive inwards; rounding counts as the closure. An edge that rounding made lies
+        // on no line.
+        let length = norm(&sub(&p, &q));
+        length <= lost || area * turn >= -1e-12 * size * length
     });
     if inside {
         let fan = edges(slice).map(|(p, q)| fan_triangle(&tip, &p, &q, rule));
