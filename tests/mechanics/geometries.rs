@@ -104,3 +104,16 @@ fn a_loose_piece_between_three_crossings_in_a_cell_moves_rigidly() {
     assert!(!body.elastic.floating().is_empty());
     assert_below(body.checks.uniform, 1e-9, "uniform stress");
 }
+
+/// Goal: on an edge, too, a bend carries no pair: its normal would be that of the leg that is read first.
+#[test]
+fn no_pair_stands_on_a_bend() {
+    let crack = "[[crack]]\npoints_m = [[4, 5], [1, 5.47], [1, 4.5]]\ncontact = \"edge-pairs\"\nfriction = 0.3\n";
+    let rest = crack.to_owned() + &support("\"bottom\"", "[0, 0]");
+    let found = body(&plane([0.0, 0.0], [7.0, 6.0], [7, 6], &rest));
+    let places: Vec<[f64; 2]> = found.points.iter().map(|p| [p.x[0], p.x[1]]).collect();
+    assert!(
+        places.len() > 1 && !places.contains(&[1.0, 5.47]),
+        "{places:?}"
+    );
+}

@@ -1,4 +1,4 @@
-//! The founding paper's contact points: one pair per crossed mesh edge, merged at a node the crack runs through.
+//! The founding paper's contact points: one pair per mesh edge that an arm crosses, merged at a node it runs through.
 //!
 //! ```text
 //!   [[u]](x_c) = ± Σ N_j(x_c) b_j + 2 √r Σ N_k(x_c) c_k1      (paper, Eq. 14)
@@ -6,10 +6,11 @@
 //!
 //! P is a point force. Off the grid lines the pairs miss the patch test; the integrated spaces do not.
 
+use crate::cut::crack::End;
 use crate::enrichment::AT_TIP;
 use crate::enrichment::basis::FunctionKind;
 use crate::enrichment::facets::{Corner, CrackFacets};
-use crate::geometry::{norm, sub};
+use crate::geometry::{Point, norm, sub};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
 
 use super::multipliers::pair_space;
@@ -27,11 +28,18 @@ pub fn edge_pairs(
     let crack = &integrator.cracks[index];
     let sizes = &integrator.enrichment.lengths.of_nodes;
     let facets = CrackFacets::new(mesh, index, crack, integrator.enrichment);
+    // Where arms meet on an edge the jump has no one normal: as at a bend inside a cell no pair stands there.
+    let ends = crack
+        .ends
+        .into_iter()
+        .zip([crack.path.first(), crack.path.last()]);
+    let ends = ends.filter(|(end, _)| matches!(end, End::Bend | End::Meeting));
+    let joined: Vec<Point> = ends.filter_map(|(_, vertex)| Some(vertex?.x)).collect();
     let mut points: Vec<Option<ContactPoint>> = facets
         .corners
         .iter()
         .map(|corner| {
-            let nodes = corner.nodes?;
+            let nodes = corner.nodes.filter(|_| !joined.contains(&corner.x))?;
             let at_tip = AT_TIP * sizes[nodes[0] as usize].min(sizes[nodes[1] as usize]);
             let terms = jump_terms(integrator, index, corner, nodes, at_tip);
             (!terms.is_empty()).then(|| ContactPoint::of(crack, corner.x, 0.0, &terms))
