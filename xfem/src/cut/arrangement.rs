@@ -26,7 +26,6 @@ use crate::geometry::polygon::bends;
 use crate::mesh::{Lengths, Mesh};
 
 use self::around::Around;
-use self::ends::JOINED;
 use self::snap::Net;
 pub use self::walk::{Chain, TracedTip};
 use super::crack::{Crack, Geometry, on_crack};
@@ -39,9 +38,9 @@ pub const DELTA: f64 = 1e-6;
 /// beside a node is drawn through it at any angle.
 const LINE: f64 = 1.0 / 30.0;
 
-/// What is this near to a cell, or to a radius around a place, counts as within, in shortest edges: a part of `JOINED` that lies between
-/// no coordinates which users type, so that rounding decides nothing.
-pub const WITHIN: f64 = 0.618 * JOINED;
+/// What is this near to a cell, or to a radius around a place, counts as within, in shortest edges: beyond a thousandth, and between
+/// the places where coordinates of few digits put a tip that is meant to be on a node, so that rounding decides nothing.
+pub const WITHIN: f64 = 2.36e-3;
 
 /// Bends sharper than this part a crack [rad]: ten degrees.
 pub const BEND: f64 = 10.0 * std::f64::consts::PI / 180.0;
