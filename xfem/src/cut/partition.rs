@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::mesh::cell::CellMap;
 
 use super::crack::{Crack, crossings};
-use super::part::{Face, FaceCorner, Part};
+use super::part::{Face, FaceCorner, Part, Region};
 
 /// A divided cell.
 #[derive(Debug, Clone, Default)]
@@ -177,6 +177,22 @@ impl Partition {
         }
         self.faces = faces;
     }
+
+    /// What a region leaves of a polygon in a facet of its cell; cracks along all of it leave it whole.
+    pub fn clipped(
+        &self,
+        cracks: &[Crack],
+        region: Region,
+        mut polygon: Vec<FaceCorner>,
+    ) -> Vec<FaceCorner> {
+        for &(crack, side) in &self.parts[region].sides {
+            let level = |x: &Point| cracks[crack].level(x);
+            if polygon.iter().any(|corner| level(&corner.0) != 0.0) {
+                polygon = clip_face(&polygon, level, side);
+            }
+        }
+        polygon
+    }
 }
 
 /// Whether a crack reaches into a part, or ends on another one before.
@@ -189,11 +205,7 @@ pub fn lives(cracks: &[Crack], crack: &Crack, part: &Part) -> bool {
 }
 
 /// Convex polygon of face corners on one side of a level.
-pub fn clip_face(
-    corners: &[FaceCorner],
-    level: impl Fn(&Point) -> f64,
-    side: Side,
-) -> Vec<FaceCorner> {
+fn clip_face(corners: &[FaceCorner], level: impl Fn(&Point) -> f64, side: Side) -> Vec<FaceCorner> {
     let levels: Vec<f64> = corners.iter().map(|c| level(&c.0)).collect();
     if !levels.iter().any(|v| v * side > 0.0) {
         return Vec::new();

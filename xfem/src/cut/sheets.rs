@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use super::crack::{Crack, crossings};
 use super::is_split;
 use super::part::{Face, FaceCorner, Place};
-use super::partition::{Partition, clip_face, lives};
+use super::partition::{Partition, lives};
 use super::placement::{Along, along_places};
 
 /// A facet along which an arm runs.
@@ -96,19 +96,12 @@ pub fn add_faces(
         let map = mesh.map(sheet.cells[0]);
         let corner = |&i: &usize| -> FaceCorner { (map[i], Some([i, i])) };
         let whole: Vec<FaceCorner> = sheet.facet.iter().map(corner).collect();
-        // Sides of the region, but of cracks along the facet.
-        let clipped = |cell: usize, region: usize, mut polygon: Vec<FaceCorner>| {
-            let part = partitions.get(&cell).map(|own| &own.parts[region]);
-            if part.is_some_and(|part| !lives(arms, crack, part)) {
-                return Vec::new();
+        let clipped = |cell: usize, region: usize, polygon| match partitions.get(&cell) {
+            None => polygon,
+            Some(own) if lives(arms, crack, &own.parts[region]) => {
+                own.clipped(arms, region, polygon)
             }
-            for &(other, side) in part.iter().flat_map(|part| &part.sides) {
-                let level = |x: &Point| arms[other].level(x);
-                if whole.iter().any(|corner| level(&corner.0) != 0.0) {
-                    polygon = clip_face(&polygon, level, side);
-                }
-            }
-            polygon
+            Some(_) => Vec::new(),
         };
         let regions = |cell: usize| partitions.get(&cell).map_or(1, |own| own.parts.len());
         let mut faces = Vec::new();

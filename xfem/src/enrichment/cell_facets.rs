@@ -1,9 +1,9 @@
 //! Edges and facets of a cell, divided among its regions.
 
 use crate::cut::crack::Crack;
-use crate::cut::part::{Part, Region};
+use crate::cut::part::{FaceCorner, Part, Region};
 use crate::cut::partition::Partition;
-use crate::geometry::clip::{Side, clip};
+use crate::geometry::clip::Side;
 use crate::geometry::polygon::{border_distance, contains};
 use crate::geometry::{Point, add_scaled, dot, sub};
 use crate::mesh::Mesh;
@@ -32,27 +32,14 @@ pub fn pieces(
             _ => edge_pieces(cracks, partition, &vertices, [i, j]),
         };
     }
-    let parts = partition.parts.iter().enumerate();
-    let pieces = parts.map(|(region, part)| {
-        let polygon = clipped(cracks, part, vertices.clone());
-        (polygon, region)
+    let whole: Vec<FaceCorner> = vertices.into_iter().map(|x| (x, None)).collect();
+    let pieces = (0..partition.parts.len()).map(|region| {
+        let polygon = partition.clipped(cracks, region, whole.clone());
+        (polygon.into_iter().map(|corner| corner.0).collect(), region)
     });
-    pieces.filter(|(polygon, _)| polygon.len() > 2).collect()
-}
-
-/// The part of a polygon in a face that lies on the sides of a part of a cell; cracks along the face leave all of it.
-pub fn clipped(cracks: &[Crack], part: &Part, mut polygon: Vec<Point>) -> Vec<Point> {
-    for &(crack, side) in &part.sides {
-        let levels: Vec<f64> = polygon.iter().map(|x| cracks[crack].level(x)).collect();
-        if levels.iter().all(|level| *level == 0.0) {
-            continue;
-        }
-        if !levels.iter().any(|v| v * side > 0.0) {
-            return Vec::new();
-        }
-        polygon = clip(&polygon, &levels, side);
-    }
-    polygon
+    pieces
+        .filter(|(polygon, _): &Piece| polygon.len() > 2)
+        .collect()
 }
 
 /// Whether a part of a cell is beside a crack along a face.

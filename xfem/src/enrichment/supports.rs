@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::arrangement::Arrangement;
 use crate::cut::crack::{Crack, first_on};
-use crate::cut::part::Place;
+use crate::cut::part::{FaceCorner, Place};
 use crate::cut::partition::Partition;
 use crate::geometry::polygon::{self, space_area};
 use crate::geometry::{Point, root, unite};
@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 use crate::mesh::neighbours::Neighbours;
 use crate::quadrature::measure;
 
-use super::cell_facets::{clipped, parted};
+use super::cell_facets::parted;
 use super::tips::Tips;
 
 /// A node's own piece no region of which is larger than this part of a cell is no longer its own: the largest piece is.
@@ -218,15 +218,21 @@ impl Joiner<'_> {
         let at = |&n: &u32| self.mesh.nodes[n as usize];
         let face: Vec<Point> = corners.iter().map(at).collect();
         let whole = space_area(&face);
+        let corners: Vec<FaceCorner> = face.iter().map(|x| (*x, None)).collect();
+        let clipped = |(cell, region): Place, polygon| match self.partitions.get(&cell) {
+            None => polygon,
+            Some(own) => own.clipped(self.cracks, region, polygon),
+        };
         let mut joins = Vec::new();
         let beside = |(cell, region): Place| {
             let own = self.partitions.get(&cell);
             own.is_some_and(|own| parted(self.cracks, &own.parts[region], &face))
         };
         for one in (0..self.regions(cells[0])).filter(|&one| !beside((cells[0], one))) {
-            let own = self.clipped(face.clone(), (cells[0], one));
+            let own = clipped((cells[0], one), corners.clone());
             for two in 0..self.regions(cells[1]) {
-                let both = self.clipped(own.clone(), (cells[1], two));
+                let both = clipped((cells[1], two), own.clone());
+                let both: Vec<Point> = both.into_iter().map(|corner| corner.0).collect();
                 // Rounding leaves less.
                 if space_area(&both) > 1e-26 * whole {
                     joins.push([(cells[0], one), (cells[1], two)]);
@@ -234,17 +240,6 @@ impl Joiner<'_> {
             }
         }
         joins
-    }
-
-    /// The part of a polygon in a face that lies on the sides of a region.
-    fn clipped(&self, polygon: Vec<Point>, (cell, region): Place) -> Vec<Point> {
-        match self.partitions.get(&cell) {
-            None => polygon,
-            Some(partition) => {
-                let part = &partition.parts[region];
-                clipped(self.cracks, part, polygon)
-            }
-        }
     }
 
     /// The pieces of the support of a node beyond its own.
