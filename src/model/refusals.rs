@@ -150,7 +150,9 @@ pub fn crack_error(case: &Case, error: &EnrichmentError) -> CaseError {
         _ => &spec.geometry_span,
     };
     let fitting = match (&spec.geometry, error) {
-        (_, EnrichmentError::TooShort { .. }) => fitting_cell(&spec.geometry),
+        (_, EnrichmentError::TooShort { cell, .. }) => {
+            fitting_cell(&spec.geometry).map(|fitting| fitting.min(*cell))
+        }
         (
             _,
             EnrichmentError::Undetermined { cell, .. }

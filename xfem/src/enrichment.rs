@@ -103,7 +103,7 @@ impl Enrichment {
         for crack in cracks {
             if !present.contains(&crack.number) {
                 return Err(if enters(mesh, crack) {
-                    EnrichmentError::too_short(cracks, crack.number)
+                    EnrichmentError::too_short(cracks, crack.number, lengths)
                 } else {
                     EnrichmentError::Outside(crack.number)
                 });

@@ -50,6 +50,11 @@ impl Part {
         polygon::triangles(&self.polygon)
     }
 
+    /// Corners of its outline or tetrahedra.
+    pub fn corners(&self) -> impl Iterator<Item = &Point> {
+        self.polygon.iter().chain(self.tetrahedra.iter().flatten())
+    }
+
     /// Area [m²] or volume [m³].
     pub fn measure(&self) -> f64 {
         let solid: f64 = self.tetrahedra.iter().map(tetrahedron_volume).sum();

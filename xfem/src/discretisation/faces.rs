@@ -79,7 +79,7 @@ pub(super) fn faces(
         .iter()
         .for_each(|point| found[point.crack] = true);
     if let Some(number) = found.iter().position(|found| !found) {
-        return Err(EnrichmentError::too_short(cracks, number).into());
+        return Err(EnrichmentError::too_short(cracks, number, lengths).into());
     }
     Ok(surface)
 }

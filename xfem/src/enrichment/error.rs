@@ -4,6 +4,7 @@ use crate::cut::arrangement::ArrangementError;
 use crate::cut::crack::Crack;
 use crate::cut::partition::PartitionError;
 use crate::geometry::{Point, add_scaled};
+use crate::mesh::Lengths;
 
 /// Fault of a crack in a mesh; crack numbers are from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -18,6 +19,8 @@ pub enum EnrichmentError {
         crack: usize,
         /// Its middle [m].
         at: Point,
+        /// Half the shortest edge: those at hand do not do [m].
+        cell: f64,
     },
     /// Pieces of it share all displacements: no contact force can be told from another.
     #[error("crack {} has a piece between its bends, junctions and ends, near {at:?}, that is too short for this mesh: nothing tells the force on it from those beside it", crack + 1)]
@@ -74,12 +77,13 @@ pub enum EnrichmentError {
 
 impl EnrichmentError {
     /// Refuses a crack, given its arms.
-    pub fn too_short(arms: &[Crack], crack: usize) -> Self {
+    pub fn too_short(arms: &[Crack], crack: usize, lengths: &Lengths) -> Self {
         let own: Vec<&Crack> = arms.iter().filter(|arm| arm.number == crack).collect();
         let at = own
             .get(own.len() / 2)
             .map_or([f64::NAN; 3], |arm| arm.middle());
-        Self::TooShort { crack, at }
+        let cell = 0.5 * lengths.smallest;
+        Self::TooShort { crack, at, cell }
     }
 
     /// The same with its place in other coordinates, larger by `by` [m].

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, SVD, SymmetricEigen};
 
-use crate::geometry::{Point, root, unite};
+use crate::geometry::boxes::{Extents, around, joined};
+use crate::geometry::{Point, mean, norm, root, sub, unite};
 use crate::mesh::Mesh;
 
 use super::Enrichment;
@@ -25,6 +26,8 @@ pub struct MotionError {
 pub struct Pieces {
     /// Number of pieces.
     pub count: usize,
+    /// Boxes around them [m].
+    extents: Vec<Extents>,
     /// Copies of every node: constants of its piece functions there (all 0 on the node's own piece), and the piece of the body.
     copies: Vec<Vec<(Vec<f64>, usize)>>,
 }
@@ -50,7 +53,10 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
         let none = vec![0.0; enrichment.pieces_of(node).count()];
         copy_at(&mut parent, node, none);
     }
+    let mut boxes = Vec::new();
     for cell in 0..mesh.cell_count() {
+        let map = mesh.map(cell);
+        let parts = enrichment.partition(cell).map(|own| &own.parts);
         let functions = enrichment.cell(cell);
         let steps = enrichment.steps(cell);
         for region in 0..enrichment.regions(cell) {
@@ -64,11 +70,16 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
                 let copy = copy_at(&mut parent, node as usize, constants);
                 unite(&mut parent, copy, *first.get_or_insert(copy));
             }
+            let own = match parts {
+                Some(parts) => around(parts[region].corners(), 0.0),
+                None => around(map.iter(), 0.0),
+            };
+            boxes.extend(first.map(|copy| (copy, own)));
         }
     }
     let mut piece_of = vec![None; parent.len()];
     let mut count = 0;
-    let copies = number
+    let copies: Vec<Vec<_>> = number
         .into_iter()
         .map(|list| {
             let numbered = list.into_iter().map(|(constants, copy)| {
@@ -82,7 +93,16 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
             numbered.collect()
         })
         .collect();
-    Pieces { count, copies }
+    let mut extents = vec![around([], 0.0); count];
+    for (copy, own) in boxes {
+        let piece = piece_of[root(&mut parent, copy)].unwrap_or_default();
+        extents[piece] = joined(extents[piece], &own);
+    }
+    Pieces {
+        count,
+        extents,
+        copies,
+    }
 }
 
 impl Pieces {
@@ -191,6 +211,11 @@ pub fn free_motions(
             return Err(MotionError { motions });
         }
     }
+    // Near a small piece a node moves farther than that: what is solved with is of order one.
+    for motion in &mut free {
+        let most = motion.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        motion.iter_mut().for_each(|v| *v /= most);
+    }
     Ok(free)
 }
 
@@ -207,16 +232,18 @@ fn combined<'a>(modes: impl Iterator<Item = &'a Vec<f64>>, c: impl Fn(usize) -> 
     sum
 }
 
-/// All rigid motions of all pieces over all unknowns; rotations scaled to order one.
+/// All rigid motions of all pieces over all unknowns: rotations about the middle of a piece, of order one at its border. In parts of the
+/// body those of a small piece would be rounding.
 fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<Vec<f64>> {
     let dim = mesh.dim();
-    let (size, centre) = mesh.extent();
     let rotations: &[[usize; 2]] = if dim == 2 {
         &[[0, 1]]
     } else {
         &[[0, 1], [1, 2], [2, 0]]
     };
-    let motion = |kind: usize, x: &Point| -> Point {
+    let motion = |kind: usize, piece: usize, x: &Point| -> Point {
+        let [low, high] = &pieces.extents[piece];
+        let (centre, size) = (mean([low, high]), norm(&sub(high, low)));
         let mut r = [0.0; 3];
         if kind < dim {
             r[kind] = 1.0;
@@ -232,7 +259,7 @@ fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<V
     all.map(|(piece, kind)| {
         pieces.field(mesh, enrichment, |p, x| {
             if p == piece {
-                motion(kind, x)
+                motion(kind, piece, x)
             } else {
                 [0.0; 3]
             }

@@ -300,11 +300,7 @@ impl Joiner<'_> {
         let x = &self.mesh.nodes[node as usize];
         let at_node = |&(cell, region): &Place| match self.partitions.get(&cell) {
             None => true,
-            Some(partition) => {
-                let part = &partition.parts[region];
-                let mut corners = part.polygon.iter().chain(part.tetrahedra.iter().flatten());
-                corners.any(|c| c == x)
-            }
+            Some(partition) => partition.parts[region].corners().any(|c| c == x),
         };
         let below =
             crack.is_some_and(|(crack, beside)| beside.is_some_and(|x| crack.distance(x) < 0.0));

@@ -26,7 +26,7 @@ pub fn no_nearer(x: &Point, [low, high]: &Extents) -> f64 {
 }
 
 /// The box of two boxes.
-fn joined(one: Extents, two: &Extents) -> Extents {
+pub fn joined(one: Extents, two: &Extents) -> Extents {
     let low = [0, 1, 2].map(|a| one[0][a].min(two[0][a]));
     [low, [0, 1, 2].map(|a| one[1][a].max(two[1][a]))]
 }

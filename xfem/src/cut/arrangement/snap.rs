@@ -7,7 +7,7 @@
 //!   4  crossings of one edge by several segments within δ/30 are one vertex on it
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::boxes::{Boxes, around};
@@ -16,7 +16,7 @@ use crate::geometry::polygon::{crossed, segment_foot};
 use crate::geometry::{Point, add_scaled, mean, norm, root, sub, unite};
 
 use super::around::Around;
-use super::ends::bend;
+use super::ends::{JOINED, bend};
 use super::{ArrangementError, BEND, DELTA, LINE, Line, Link, Moved, On, Vertex};
 
 /// Places where a crack meets others, bends or leaves the body, closer than this to each other, are one, in shortest edges: a modelling
@@ -149,9 +149,19 @@ impl<'a> Net<'a> {
             both && (uses[i].min(uses[j]) > 1 || lines[i].iter().any(|l| lines[j].contains(l)))
         };
         let reach = SAME_PLACE * self.vertices.iter().map(|v| v.size).fold(0.0, f64::max);
+        let mut changed = false;
         let boxes = Boxes::new(self.vertices.iter().map(|v| [v.x; 2]));
         let mut parent: Vec<usize> = (0..count).collect();
-        let mut changed = false;
+        let mut known = BTreeSet::new();
+        for (_, _, [i, j]) in self.segments() {
+            // Two lines between the same places: what parted them was one place.
+            let [a, b] = [i, j].map(|i| &self.vertices[i]);
+            let short = norm(&sub(&a.x, &b.x)) <= JOINED * a.size.min(b.size);
+            if !known.insert([i.min(j), i.max(j)]) && short {
+                unite(&mut parent, i, j);
+                changed = true;
+            }
+        }
         for (i, a) in self.vertices.iter().enumerate().filter(|v| uses[v.0] > 0) {
             for j in boxes.meeting(&around(
                 [&a.x],
