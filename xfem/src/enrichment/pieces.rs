@@ -24,10 +24,8 @@ pub struct MotionError {
 /// The connected pieces of a body.
 #[derive(Debug, Clone)]
 pub struct Pieces {
-    /// Number of pieces.
-    pub count: usize,
     /// Boxes around them [m].
-    extents: Vec<Extents>,
+    pub extents: Vec<Extents>,
     /// Copies of every node: constants of its piece functions there (all 0 on the node's own piece), and the piece of the body.
     copies: Vec<Vec<(Vec<f64>, usize)>>,
 }
@@ -79,7 +77,7 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
     }
     let mut piece_of = vec![None; parent.len()];
     let mut count = 0;
-    let copies: Vec<Vec<_>> = number
+    let copies = number
         .into_iter()
         .map(|list| {
             let numbered = list.into_iter().map(|(constants, copy)| {
@@ -92,17 +90,13 @@ pub fn pieces(mesh: &Mesh, enrichment: &Enrichment) -> Pieces {
             });
             numbered.collect()
         })
-        .collect();
+        .collect::<Vec<_>>();
     let mut extents = vec![around([], 0.0); count];
     for (copy, own) in boxes {
         let piece = piece_of[root(&mut parent, copy)].unwrap_or_default();
         extents[piece] = joined(extents[piece], &own);
     }
-    Pieces {
-        count,
-        extents,
-        copies,
-    }
+    Pieces { extents, copies }
 }
 
 impl Pieces {
@@ -255,7 +249,11 @@ fn piece_motions(mesh: &Mesh, enrichment: &Enrichment, pieces: &Pieces) -> Vec<V
         r
     };
     let kinds = dim + rotations.len();
-    let all = (0..pieces.count).flat_map(|piece| (0..kinds).map(move |kind| (piece, kind)));
+    // A copy that no region has moves nothing.
+    let filled = |&piece: &usize| pieces.extents[piece][0] <= pieces.extents[piece][1];
+    let all = (0..pieces.extents.len())
+        .filter(filled)
+        .flat_map(|piece| (0..kinds).map(move |kind| (piece, kind)));
     all.map(|(piece, kind)| {
         pieces.field(mesh, enrichment, |p, x| {
             if p == piece {
