@@ -14,7 +14,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use crate::algebra::delassus::{Delassus, Dense};
-use crate::algebra::dense::dot;
+use crate::algebra::dense::{add, dot};
 use crate::algebra::plain::Full;
 use crate::condensed::problem::{Check, ContactProblem, Limits};
 use crate::contract::operator::ContactOperator;
@@ -213,13 +213,10 @@ fn augment(operator: &ContactOperator, kappa: f64) -> Dense {
     let inner = Mat::from_fn(q.len(), q.len(), |a, b| dot(&q[a], &wq[b]));
     let augmented = Full::of_columns(m, m, |j, column| {
         column.copy_from_slice(w.column(j, &mut Vec::new()));
-        for (i, entry) in column.iter_mut().enumerate() {
-            for a in 0..q.len() {
-                *entry += kappa * q[a][i] * q[a][j] - q[a][i] * qw[a][j] - wq[a][i] * q[a][j];
-                for b in 0..q.len() {
-                    *entry += q[a][i] * inner[(a, b)] * q[b][j];
-                }
-            }
+        for a in 0..q.len() {
+            let back: f64 = (0..q.len()).map(|b| inner[(a, b)] * q[b][j]).sum();
+            add(kappa * q[a][j] - qw[a][j] + back, &q[a], column);
+            add(-q[a][j], &wq[a], column);
         }
     });
     Dense::new(augmented, w.symmetric())
