@@ -1,13 +1,14 @@
 //! Snapping: vertices onto the mesh and onto each other, segments through what lies beside them, until nothing moves.
 //!
 //! ```text
-//!   1  vertices within δ of each other are one: on the node, else the edge, else at their mean
+//!   1  vertices within δ of each other are one: on the node, else the edge, else at their mean;
+//!      places are within `SAME_PLACE`, and the ends of a segment that two lines share up to `JOINED`
 //!   2  a segment within δ/30 of a vertex or node runs through it
 //!   3  where two segments cross, and where one leaves the body, there is a vertex
 //!   4  crossings of one edge by several segments within δ/30 are one vertex on it
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::cut::crack::{Crack, Geometry};
 use crate::geometry::boxes::{Boxes, around};
@@ -152,12 +153,9 @@ impl<'a> Net<'a> {
         let mut changed = false;
         let boxes = Boxes::new(self.vertices.iter().map(|v| [v.x; 2]));
         let mut parent: Vec<usize> = (0..count).collect();
-        let mut known = BTreeSet::new();
-        for (_, _, [i, j]) in self.segments() {
-            // Two lines between the same places: what parted them was one place.
+        for (_, [i, j]) in self.shared() {
             let [a, b] = [i, j].map(|i| &self.vertices[i]);
-            let short = norm(&sub(&a.x, &b.x)) <= JOINED * a.size.min(b.size);
-            if !known.insert([i.min(j), i.max(j)]) && short {
+            if norm(&sub(&a.x, &b.x)) <= JOINED * a.size.min(b.size) {
                 unite(&mut parent, i, j);
                 changed = true;
             }
@@ -252,6 +250,16 @@ impl<'a> Net<'a> {
             own.collect::<Vec<_>>()
         };
         lines.flat_map(of).collect()
+    }
+
+    /// Segments between the same ends as one before: the lines of both, and the ends.
+    fn shared(&self) -> impl Iterator<Item = ([usize; 2], [usize; 2])> {
+        let mut known = BTreeMap::new();
+        let segments = self.segments().into_iter();
+        segments.filter_map(move |(l, _, [i, j])| {
+            let before = known.insert([i.min(j), i.max(j)], l);
+            before.map(|k| ([k, l], [i, j]))
+        })
     }
 
     /// Leads segments through vertices and nodes beside them; whether there were any.
@@ -423,17 +431,11 @@ impl<'a> Net<'a> {
             let crack = cracks[line.crack].number;
             return Err(ArrangementError::Point { crack, at });
         }
-        let mut known: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-        for (l, _, [i, j]) in self.segments() {
-            if let Some(other) = known.insert([i.min(j), i.max(j)], l) {
-                let ends = [i, j].map(|i| self.vertices[i].x);
-                return Err(ArrangementError::Overlap {
-                    cracks: [other, l].map(|l| cracks[self.lines[l].crack].number),
-                    at: mean(&ends),
-                });
-            }
-        }
-        Ok(())
+        let overlap = |(lines, ends): ([usize; 2], [usize; 2])| ArrangementError::Overlap {
+            cracks: lines.map(|l| cracks[self.lines[l].crack].number),
+            at: mean(&ends.map(|i| self.vertices[i].x)),
+        };
+        self.shared().next().map_or(Ok(()), |own| Err(overlap(own)))
     }
 
     /// The place of every crack that was moved farthest, where that is more than rounding. `put`: their points [m].
