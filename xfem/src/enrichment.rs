@@ -42,7 +42,7 @@ pub const AT_TIP: f64 = 1e-3;
 pub struct Enrichment {
     /// Functions, the standard ones first in node order, then the enriched ones by node and kind.
     pub functions: Vec<Function>,
-    /// Shift of every function: g_l(x_k) of branch functions, 0 of others.
+    /// Shift of every function: g_l(x_k) of branch functions, on their crack the mean of both sides; 0 of others.
     pub shifts: Vec<f64>,
     /// Tips and fronts inside the body that carry branch functions.
     pub tips: Vec<TipFrame>,
@@ -144,8 +144,15 @@ impl Enrichment {
                 FunctionKind::Standard | FunctionKind::Piece { .. } => 0.0,
                 FunctionKind::Branch { tip, order } => {
                     let frame: &TipFrame = &tips.frames[tip as usize];
-                    let side = cracks[frame.crack].side_of(mesh, f.node as usize);
-                    frame.branch(&mesh.nodes[f.node as usize], Some(side)).0[order as usize]
+                    let crack = &cracks[frame.crack];
+                    let x = &mesh.nodes[f.node as usize];
+                    let at = |side| frame.branch(x, Some(side)).0[order as usize];
+                    // On the crack neither side goes first: where a ramp rises, the functions differ by more than a shift.
+                    if crack.holds(f.node) {
+                        0.5 * (at(1.0) + at(-1.0))
+                    } else {
+                        at(crack.side_of(mesh, f.node as usize))
+                    }
                 }
             })
             .collect();

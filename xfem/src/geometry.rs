@@ -6,7 +6,6 @@ pub mod chain;
 pub mod clip;
 pub mod crack_shape;
 pub mod curve;
-mod ears;
 pub mod ellipse;
 pub mod polygon;
 pub mod segments;

@@ -90,7 +90,7 @@ fn flat_points(part: &Part, fronts: &[TipFrame], n: usize, affine: bool) -> Vec<
         })
     });
     let Some(tip) = inside else {
-        return graded_points(&triangles, &tips, [n; 2]);
+        return graded_points(&polygon::pieces(&part.polygon), &tips, [n; 2]);
     };
     // Each outer edge in n/4 parts: doubling n doubles the angular points of the fan, too.
     let count = n.div_ceil(4);

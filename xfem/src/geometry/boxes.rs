@@ -173,32 +173,4 @@ impl Boxes {
         }
         best
     }
-
-    /// Takes one out, given its number and its box.
-    pub fn remove(&mut self, number: usize, extents: &Extents) {
-        self.remove_from(self.root(), number, extents);
-    }
-
-    fn remove_from(&mut self, own: Node, number: usize, extents: &Extents) -> bool {
-        let (node, [begin, end]) = own;
-        let around = self.nodes[node];
-        let inside = |a: usize| around[0][a] <= extents[0][a] && extents[1][a] <= around[1][a];
-        if begin == end || !(0..3).all(inside) {
-            return false;
-        }
-        let found = match halves(own) {
-            Some(halves) => {
-                (halves.into_iter()).any(|half| self.remove_from(half, number, extents))
-            }
-            None => {
-                let mut items = self.items[begin..end].iter_mut();
-                let item = items.find(|item| item.1 as usize == number);
-                item.map(|item| item.0 = EMPTY).is_some()
-            }
-        };
-        if found {
-            self.enclose(own);
-        }
-        found
-    }
 }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use earcut::Earcut;
+
 use super::boxes::Extents;
 use super::clip::fan;
-use super::ears::ears;
 use super::{Point, add_scaled, cross, dot, norm, sub};
 
 /// Corners in counter-clockwise order.
@@ -157,6 +158,32 @@ pub fn is_convex(polygon: &[Point]) -> bool {
         // Corners in line turn by rounding only.
         doubled_area(a, &polygon[i], b) >= -1e-14 * size * norm(&sub(b, a))
     })
+}
+
+/// Convex quadrilaterals and triangles that fill a polygon: of a convex one from its first corner, ears of another.
+pub fn pieces(polygon: &[Point]) -> Vec<Polygon> {
+    if !is_convex(polygon) {
+        return ears(polygon).iter().map(|t| t.to_vec()).collect();
+    }
+    let from_first = |k: usize| {
+        let end = (k + 3).min(polygon.len());
+        [&polygon[..1], &polygon[k..end]].concat()
+    };
+    let count = polygon.len().saturating_sub(1);
+    (1..count).step_by(2).map(from_first).collect()
+}
+
+/// Triangles that fill a simple polygon.
+fn ears(polygon: &[Point]) -> Vec<[Point; 3]> {
+    let mut corners: Vec<usize> = Vec::new();
+    let places = polygon.iter().map(|&[x, y, _]| [x, y]);
+    Earcut::new().earcut(places, &[], &mut corners);
+    let triangle = |own: &[usize]| {
+        let [a, b, c] = [own[0], own[1], own[2]].map(|k| polygon[k]);
+        let left = doubled_area(&a, &b, &c) >= 0.0;
+        if left { [a, b, c] } else { [a, c, b] }
+    };
+    corners.chunks_exact(3).map(triangle).collect()
 }
 
 /// Triangles that fill a polygon: a fan of a convex one, ears of another. None of corners in line: what lies along one is not in it.

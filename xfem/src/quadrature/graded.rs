@@ -7,14 +7,16 @@
 //! that ends at the line.
 
 use crate::geometry::clip::{clip, halve_tetrahedron, halve_triangle};
-use crate::geometry::polygon::{border_distance, segment_distance};
+use crate::geometry::polygon::{Polygon, border_distance, edges, segment_distance};
 use crate::geometry::{Point, add_scaled, diameter, dot, mean, norm, sub};
-use crate::mesh::cell::CellMap;
+use crate::mesh::cell::{CellKind, CellMap};
 
 use super::slice::slice_points;
-use super::{FanRule, WeightedPoint, gauss_cell, segment, tetrahedron, triangle_collapsed};
+use super::{
+    FanRule, WeightedPoint, gauss_cell, gauss_map, segment, tetrahedron, triangle_collapsed,
+};
 
-/// From so many diameters of a triangle on a tip is far.
+/// From so many of the longest edge of a piece on a tip is far.
 pub const FAR: f64 = 4.0;
 
 /// True if no point of the simplex is nearer to the singularity than the simplex is long.
@@ -165,50 +167,55 @@ pub fn graded_segment(
     parts.iter().flat_map(|[p, q]| segment(p, q, n)).collect()
 }
 
-/// Points of triangles near tips: n × n points where no tip is closer than the triangle's diameter, which are exact to
-/// (3 + √8)^−2n for functions with singularities at that distance, `far` × `far` where none is at four times the distance, which
-/// are exact to (9 + √80)^−2far; polar coordinates around the tip elsewhere, on what lies nearer to it than to another.
+/// Points of triangles and convex quadrilaterals near tips, in polar coordinates around every tip closer than the longest edge, on
+/// what lies nearer to it than to another; n × n points where there is none, `far` × `far` where there is none at four times the
+/// distance. A singularity at that distance leaves a relative error of (3 + √8)^−2n and (9 + √80)^−2far.
 pub fn graded_points(
-    triangles: &[[Point; 3]],
+    pieces: &[Polygon],
     tips: &[Point],
     [n, far]: [usize; 2],
 ) -> Vec<WeightedPoint> {
+    // Errors of 3e-12 where the tip lies at that distance (24: 3e-15).
+    let rule = FanRule {
+        radial: n.max(6),
+        angular: 20,
+    };
     let mut points = Vec::new();
-    for t in triangles {
-        let size = diameter(t);
+    for piece in pieces {
+        let lengths = edges(piece).map(|(p, q)| norm(&sub(&q, &p)));
+        let longest = lengths.fold(0.0, f64::max);
         let within = |reach: f64| {
             tips.iter()
-                .filter(move |tip| border_distance(t, tip) < reach * size)
+                .filter(move |tip| border_distance(piece, tip) < reach * longest)
         };
         let near: Vec<&Point> = within(1.0).collect();
         if near.is_empty() {
             let order = if within(FAR).next().is_none() { far } else { n };
-            points.extend(triangle_collapsed(t, order));
+            points.extend(smooth_points(piece, order));
         }
         for tip in &near {
-            let mut own = t.to_vec();
+            let mut own = piece.clone();
             for other in near.iter().filter(|other| *other != tip) {
                 let (middle, apart) = (mean([*tip, *other]), sub(tip, other));
                 let levels: Vec<f64> = own.iter().map(|x| dot(&apart, &sub(x, &middle))).collect();
                 own = clip(&own, &levels, 1.0);
             }
             if own.len() > 2 {
-                // Half of the angles on every interval.
-                let rule = FanRule {
-                    radial: n.max(6),
-                    angular: 2 * n + 14,
-                };
-                points.extend(slice_points(
-                    &own,
-                    &[0.0, 0.0, 1.0],
-                    Some(**tip),
-                    size,
-                    rule,
-                ));
+                let up = [0.0, 0.0, 1.0];
+                points.extend(slice_points(&own, &up, Some(**tip), longest, rule));
             }
         }
     }
     points
+}
+
+/// Points of a smooth function on a triangle or a convex quadrilateral, n × n.
+fn smooth_points(piece: &[Point], n: usize) -> Vec<WeightedPoint> {
+    if let Ok(triangle) = piece.try_into() {
+        return triangle_collapsed(triangle, n);
+    }
+    let map = CellMap::new(CellKind::Quad4, |i| piece[i]);
+    gauss_map(&map, n).map(|(_, p)| p).collect()
 }
 
 #[cfg(test)]
@@ -271,14 +278,17 @@ mod tests {
     }
 
     #[test]
-    fn graded_points_integrate_a_near_singularity() {
-        let t = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        for distance in [1e-1, 1e-3, 1e-6] {
-            let tip = [0.4, -distance, 0.0];
-            let points = graded_points(&[t], &[tip], [7, 5]);
-            let found = integral(&points, |x| 1.0 / norm(&sub(x, &tip)));
-            let error = found / inverse_distance(&t, &tip) - 1.0;
-            assert!(error.abs() < 1e-8, "{distance}: {error:e}");
+    fn graded_points_integrate_a_singularity_at_every_distance() {
+        let square = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        for (count, distance) in [3, 4].into_iter().flat_map(|n| {
+            let distances = [1e-6, 1e-3, 0.1, 0.5, 0.99, 1.01, 2.0, 3.99, 4.01];
+            distances.map(|distance| (n, distance))
+        }) {
+            let (piece, tip) = (square[..count].to_vec(), [0.4, -distance, 0.0]);
+            let exact = inverse_distance(&piece, &tip);
+            let points = graded_points(&[piece], &[tip], [10, 6]);
+            let error = integral(&points, |x| 1.0 / norm(&sub(x, &tip))) / exact - 1.0;
+            assert!(error.abs() < 1e-11, "{count}, {distance}: {error:e}");
         }
     }
 }

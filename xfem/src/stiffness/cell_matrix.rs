@@ -197,19 +197,16 @@ impl<'a> CellIntegrator<'a> {
                 cross(&from, &to)[2] >= -1e-12 * map.diagonal() * norm(&sub(&q, &p))
             })
         };
-        // A ramp squared raises the degree by four.
-        let order = if self.enrichment.ramps_in(self.mesh.cell(cell), cell) {
-            [9, 7]
-        } else {
-            [7, 5]
-        };
+        // Errors of 1e-12; a ramp squared raises the degree by four.
+        let ramps = self.enrichment.ramps_in(self.mesh.cell(cell), cell);
+        let order = if ramps { [12, 8] } else { [10, 6] };
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
             let rule = match (branch, &tip) {
                 (true, Some(tip)) if sees(part, &tip[0]) => {
-                    tip_points(polygon::edges(&part.polygon), &tip[0], affine)
+                    tip_points(polygon::edges(&part.polygon), &tip[0], affine && !ramps)
                 }
-                (true, _) => graded_points(&part.triangles(), &tips, order),
+                (true, _) => graded_points(&polygon::pieces(&part.polygon), &tips, order),
                 (false, _) if affine => part.points(),
                 (false, _) => part.fine_points(map),
             };
