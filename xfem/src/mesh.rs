@@ -57,6 +57,19 @@ pub struct Lengths {
     pub rounding: f64,
 }
 
+impl Lengths {
+    /// Distance of two places in 1e-9 of the body's size: in the order of such distances what depends on an order is the same however
+    /// cracks are named and read, and the body is turned.
+    pub fn apart(&self, x: &Point, y: &Point) -> i64 {
+        (norm(&sub(x, y)) / self.extent.0 * 1e9).round() as i64
+    }
+
+    /// The same from the middle of the body.
+    pub fn from_middle(&self, x: &Point) -> i64 {
+        self.apart(x, &self.extent.1)
+    }
+}
+
 impl Mesh {
     /// A mesh from its parts; `cells` is flat, `kind.nodes()` entries per cell.
     pub fn new(

@@ -121,8 +121,10 @@ fn on_faces(body: &Discretisation, node: u32, side: f64) -> Vec<(usize, f64)> {
         let frame = &enrichment.tips[tip as usize];
         let on =
             body.cracks[frame.crack].holds(node) && enrichment.ramp(tip as usize, &[node]) & 1 == 1;
-        let g = frame.branch(&body.mesh.nodes[node as usize], Some(side)).0;
-        on.then(|| (f, g[order as usize] - enrichment.shifts[f]))
+        on.then(|| {
+            let g = frame.branch(&body.mesh.nodes[node as usize], Some(side)).0;
+            (f, g[order as usize] - enrichment.shifts[f])
+        })
     };
     enrichment
         .enriched_of(node as usize)

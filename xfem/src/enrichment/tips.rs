@@ -135,7 +135,7 @@ impl Tips {
             ..Tips::default()
         };
         let mut kept: Vec<usize> = (0..search.kept.len()).filter(|&t| search.kept[t]).collect();
-        kept.sort_by_key(|&t| search.away(&arrangement.tips[t].x));
+        kept.sort_by_key(|&t| lengths.from_middle(&arrangement.tips[t].x));
         let found = kept.into_par_iter().map(|number| {
             let tip = &arrangement.tips[number];
             let end = search.end(number);
@@ -228,13 +228,6 @@ impl Search<'_> {
     /// Whether a chain divides its cell: one with a free end only where that carries functions.
     fn divides(&self, chain: &Chain) -> bool {
         (0..2).all(|end| !chain.tip[end] || self.keeps(chain.arm, end))
-    }
-
-    /// Distance from the middle of the body, in 1e-9 of its size: in this order what depends on an order is the same however the
-    /// cracks are named and read, and the body is turned.
-    fn away(&self, x: &Point) -> i64 {
-        let (extent, middle) = self.lengths.extent;
-        (norm(&sub(x, &middle)) / extent * 1e9).round() as i64
     }
 
     fn keeps(&self, arm: usize, end: usize) -> bool {

@@ -1,8 +1,7 @@
 //! The points at which the discrete field of a cell is compared with an exact one.
 //!
 //! The rules that integrate the stiffness are exact for the discrete functions only. An exact field with a crack tip near
-//! varies faster: here every triangle or tetrahedron is halved until no tip is closer than its diameter, and a cell that
-//! holds the tip itself is a fan with the tip as apex.
+//! varies faster: here rules are in polar coordinates around the tips nearby, and tetrahedra are halved towards a front.
 
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
@@ -77,7 +76,7 @@ pub fn comparison_points(
     rule.into_iter().map(located).collect()
 }
 
-/// Points of a 2D part: a fan about the tip in its closure, or triangles halved towards the tips outside.
+/// Points of a 2D part: a fan about the tip in its closure, or polar coordinates around the tips beside it.
 fn flat_points(part: &Part, fronts: &[TipFrame], n: usize, affine: bool) -> Vec<WeightedPoint> {
     let triangles = part.triangles();
     let size = diameter(&part.polygon);

@@ -75,7 +75,7 @@ impl Boxes {
         if self.nodes.len() <= node {
             self.nodes.resize(node + 1, EMPTY);
         }
-        if let Some(halves) = halves(own) {
+        self.nodes[node] = if let Some(halves) = halves(own) {
             let items = &mut self.items[begin..end];
             let lowest = around(items.iter().map(|item| &item.0[0]), 0.0);
             // Between infinite ones it is not-a-number, and no axis is longer.
@@ -91,19 +91,11 @@ impl Boxes {
                 a.0[0][axis].total_cmp(&b.0[0][axis]).then(a.1.cmp(&b.1))
             });
             halves.into_iter().for_each(|half| self.build(half));
-        }
-        self.enclose(own);
-    }
-
-    /// Sets the box of a node.
-    fn enclose(&mut self, own: Node) {
-        let (node, [begin, end]) = own;
-        self.nodes[node] = match halves(own) {
-            Some([one, two]) => joined(self.nodes[one.0], &self.nodes[two.0]),
-            None => {
-                let items = self.items[begin..end].iter();
-                items.fold(EMPTY, |all, item| joined(all, &item.0))
-            }
+            let [one, two] = halves.map(|half| self.nodes[half.0]);
+            joined(one, &two)
+        } else {
+            let items = self.items[begin..end].iter();
+            items.fold(EMPTY, |all, item| joined(all, &item.0))
         };
     }
 

@@ -12,7 +12,7 @@ use super::{Point, add_scaled, cross, dot, norm, sub};
 pub type Polygon = Vec<Point>;
 
 /// Twice the signed area of a triangle.
-pub(super) fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
+fn doubled_area(a: &Point, b: &Point, c: &Point) -> f64 {
     cross(&sub(b, a), &sub(c, a))[2]
 }
 

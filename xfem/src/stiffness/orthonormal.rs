@@ -20,7 +20,6 @@ use rayon::prelude::*;
 
 use crate::enrichment::basis::FunctionKind;
 use crate::enrichment::{Enrichment, Zone};
-use crate::geometry::{Point, norm, sub};
 use crate::mesh::Mesh;
 
 use super::elasticity::{CellMatrix, CellView};
@@ -160,14 +159,14 @@ impl SolverBasis {
         let mut zones_of = BTreeMap::<u32, usize>::new();
         let nodes = zones.iter().flat_map(|(_, zone)| &zone.nodes);
         nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
-        let (extent, middle) = mesh.extent();
         for (tip, Zone { nodes, radius, .. }) in zones {
             let mixed = || nodes.iter().any(|node| zones_of[node] > 1);
             if *radius == 0.0 || nodes.len() <= SMALL && mixed() {
                 // Which of equals goes must not depend on how the body is turned.
+                let lengths = &enrichment.lengths;
                 let key = |&node: &u32| {
-                    let from = |x: &Point| norm(&sub(&mesh.nodes[node as usize], x)) / extent;
-                    [&tip.position, &middle].map(|x| (from(x) * 1e9).round() as i64)
+                    let x = &mesh.nodes[node as usize];
+                    [lengths.apart(x, &tip.position), lengths.from_middle(x)]
                 };
                 let mut nodes: Vec<u32> = nodes.iter().copied().collect();
                 nodes.sort_by_cached_key(key);

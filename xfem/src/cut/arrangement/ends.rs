@@ -297,7 +297,6 @@ impl Net<'_> {
     /// first, then those near the middle of the body, however the cracks are ordered.
     pub fn part_at_feet(&mut self, cracks: &[Crack]) {
         let size = self.around.lengths.smallest;
-        let (extent, middle) = self.around.lengths.extent;
         self.measure(cracks);
         // Both with functions, which is what the corner at the foot is for.
         let carries = |line: usize| cracks[line].tip != Tip::None;
@@ -334,8 +333,8 @@ impl Net<'_> {
                         });
                 let nearest = on.min_by(|a, b| a.0.total_cmp(&b.0));
                 if let Some((away, s, foot)) = nearest.filter(|foot| foot.0 <= BESIDE * size) {
-                    let from_middle = norm(&sub(&end.x, &middle)) / extent;
-                    let order = [away / size, from_middle].map(|v| (v * 1e9).round() as i64);
+                    let away = (away / size * 1e9).round() as i64;
+                    let order = [away, self.around.lengths.from_middle(&end.x)];
                     feet.push((order, line, s, foot));
                 }
             }

@@ -127,14 +127,17 @@ impl Search<'_> {
         })
     }
 
-    /// Two or more ends of arms in one place, in the order of [`Self::away`].
+    /// Two or more ends of arms in one place, in the order of their distances from the middle of the body.
     fn meetings(&self) -> Vec<(Point, Vec<ArmEnd>)> {
         let mut at: BTreeMap<(i64, [u64; 3]), (Point, Vec<ArmEnd>)> = BTreeMap::new();
         for (index, arm) in self.arms.iter().enumerate() {
             let ends = [arm.path.first(), arm.path.last()];
             for (end, vertex) in ends.into_iter().enumerate() {
                 if let (End::Bend | End::Meeting, Some(vertex)) = (arm.ends[end], vertex) {
-                    let place = (self.away(&vertex.x), vertex.x.map(f64::to_bits));
+                    let place = (
+                        self.lengths.from_middle(&vertex.x),
+                        vertex.x.map(f64::to_bits),
+                    );
                     let found = at.entry(place).or_insert_with(|| (vertex.x, Vec::new()));
                     found.1.push((index, end));
                 }
@@ -146,7 +149,7 @@ impl Search<'_> {
             ends.sort_by_key(|&(arm, end)| {
                 let path = &self.arms[arm].path;
                 let other = if end == 0 { path.last() } else { path.first() };
-                other.map(|v| self.away(&v.x))
+                other.map(|v| self.lengths.from_middle(&v.x))
             });
         }
         found
