@@ -20,8 +20,8 @@ use stickslip_xfem::stiffness::cell_matrix::CellIntegrator;
 use crate::common::*;
 
 /// Points per direction without and with branch functions: degree 6 in triangles, for φ_p φ_q of degree 4; about a tip
-/// φ_p φ_q has the factor r, and degree 13 in √r with the measure.
-const RULES: [usize; 2] = [4, 6];
+/// φ_p φ_q has the factor r, and degree 13 in √r with the measure; between the ends of a short crack it is no polynomial.
+const RULES: [usize; 2] = [4, 10];
 
 /// Mass matrix over all unknowns for density 1 [m^dim], on the pattern of the stiffness.
 pub fn mass(integrator: &CellIntegrator<'_>) -> BlockMatrix {

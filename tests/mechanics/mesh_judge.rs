@@ -108,7 +108,7 @@ seed = 60
 [[crack]]
 points_m = [[0.00077257, 0.01038711], [0.00026469, 0.00696933], [0.00436015, 0.00756945]]
 friction = 0.5
-tip = "branch"
+tip = "none"
 [[support]]
 on = "bottom"
 displacement_m = [0.0, 0.0]

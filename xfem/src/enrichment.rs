@@ -48,6 +48,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Nodes around each of them.
     pub zones: Vec<Zone>,
+    /// Arms of short cracks.
+    short: BTreeSet<usize>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
     pub tip_cells: Vec<(usize, usize)>,
     /// Boxes around all that may be at a tip or front other than a corner, with room for rounding, and its number.
@@ -157,8 +159,8 @@ impl Enrichment {
             })
             .collect();
         let mut singular: Vec<Point> = tips.frames.iter().flat_map(TipFrame::tips).collect();
-        // The arms of a corner follow each other.
-        singular.dedup();
+        let mut seen = BTreeSet::new();
+        singular.retain(|x| seen.insert(x.map(f64::to_bits)));
         let at_place = Boxes::new(singular.iter().map(|x| [*x; 2]));
         let largest = lengths.of_nodes.iter().copied().fold(0.0, f64::max);
         // At a corner other functions jump, too.
@@ -174,7 +176,10 @@ impl Enrichment {
             arms.into_iter()
                 .for_each(|arm| corners_of.entry(arm).or_default().push(number));
         }
+        let pairs = tips.frames.iter().zip(&tips.zones);
+        let pairs = pairs.filter(|(frame, _)| matches!(frame.shape, FrontShape::Pair { .. }));
         let mut enrichment = Enrichment {
+            short: pairs.flat_map(|(_, zone)| &zone.arms).copied().collect(),
             node_ptr,
             at_tips,
             corners_of,
@@ -350,6 +355,11 @@ impl Enrichment {
     /// True for a branch function.
     pub fn is_branch(&self, function: usize) -> bool {
         matches!(self.functions[function].kind, FunctionKind::Branch { .. })
+    }
+
+    /// Whether an arm is one of a short crack, which has functions of both ends.
+    pub fn is_short(&self, arm: usize) -> bool {
+        self.short.contains(&arm)
     }
 
     /// True if a node lies on a crack between its ends, so that the displacement jumps there.

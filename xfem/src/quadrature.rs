@@ -226,11 +226,6 @@ impl FanRule {
 /// ρ² removes the half powers of r from the integrand (r dr = 2 ρ³ dρ makes entries in r⁻¹, r^−½ polynomial), the sinh
 /// map follows the nearly singular angular factor (Johnston and Elliott 2005). Five radial points are exact on affine
 /// cells. Degenerate triangles return no points.
-pub fn tip_triangle(tip: &Point, a: &Point, b: &Point, affine: bool) -> Vec<WeightedPoint> {
-    fan_triangle(tip, a, b, FanRule::fine(affine))
-}
-
-/// The same with a number of points of its own.
 pub fn fan_triangle(tip: &Point, a: &Point, b: &Point, rule: FanRule) -> Vec<WeightedPoint> {
     let edge = sub(b, a);
     let length = norm(&edge);
@@ -260,22 +255,6 @@ pub fn fan_triangle(tip: &Point, a: &Point, b: &Point, rule: FanRule) -> Vec<Wei
                 points.push(WeightedPoint::new(x, weight));
             }
         }
-    }
-    points
-}
-
-/// Points of a counter-clockwise polygon, given by its edges, with a tip in its closure: the fan of [`tip_triangle`]s,
-/// negative where the outline turns its back on the tip.
-pub fn tip_points(
-    edges: impl IntoIterator<Item = (Point, Point)>,
-    tip: &Point,
-    affine: bool,
-) -> Vec<WeightedPoint> {
-    let mut points = Vec::new();
-    for (a, b) in edges {
-        let sign = 1.0f64.copysign(cross(&sub(&a, tip), &sub(&b, tip))[2]);
-        let triangle = tip_triangle(tip, &a, &b, affine).into_iter();
-        points.extend(triangle.map(|p| WeightedPoint::new(p.x, sign * p.weight)));
     }
     points
 }
@@ -345,7 +324,9 @@ mod tests {
             hair(1e-9),
         ];
         for tip in places {
-            let fan = tip_points(edges(&square), &tip, true);
+            let triangles =
+                edges(&square).map(|(a, b)| fan_triangle(&tip, &a, &b, FanRule::fine(true)));
+            let fan: Vec<WeightedPoint> = triangles.flatten().collect();
             assert!((integral(&fan, |_| 1.0) - 4.0).abs() < 1e-10);
             let found = integral(&fan, |x| 1.0 / norm(&sub(x, &tip)));
             assert!((found - inverse_distance(&square, &tip)).abs() < 1e-9);

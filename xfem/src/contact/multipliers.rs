@@ -10,6 +10,9 @@
 //!           or the pressure of a corner would be that of the next crossing
 //! ```
 //!
+//! An arm of a short crack with functions of both ends has linear functions on equal parts of about a cell: the few edges that it
+//! crosses would leave it one or two, under which its faces turn into each other.
+//!
 //! Corners whose jump is prescribed, tips, and facets too small to have an equation of their own take the mean of their
 //! neighbours along the crack: a constant continuation that leaves no multiplier without a jump to act on.
 
@@ -42,6 +45,9 @@ pub fn pair_space(facets: &CrackFacets, number: &[Option<u32>]) -> Multipliers {
 
 /// One multiplier per star of crossings, and two at the ends of arms in corners.
 pub fn star_space(free: &mut FreeJumps<'_>) -> Multipliers {
+    if let Some((from, places)) = free.short() {
+        return even_space(free, &from, &places);
+    }
     let ends = free.part_at_corners();
     let crossings = free.crossings();
     let near: Vec<_> = (0..crossings.len())
@@ -90,6 +96,30 @@ pub fn star_space(free: &mut FreeJumps<'_>) -> Multipliers {
     }
     let count = count + 2 * ends.len();
     complete(free, by_corner(&free.facets, own, count))
+}
+
+/// Linear functions between places of an arm, given by their distances from its start [m].
+fn even_space(free: &mut FreeJumps<'_>, from: &Point, places: &[f64]) -> Multipliers {
+    /// Rounding of places, in parts.
+    const ROUNDING: f64 = 1e-6;
+    let inner = &places[1..places.len() - 1];
+    inner
+        .iter()
+        .for_each(|&place| free.facets.part(from, place));
+    let own = free.facets.corners.iter().map(|corner| {
+        let away = norm(&sub(&corner.x, from));
+        let next = places
+            .partition_point(|place| *place <= away)
+            .clamp(1, places.len() - 1);
+        let (low, high) = (places[next - 1], places[next]);
+        let share = ((away - low) / (high - low)).clamp(0.0, 1.0);
+        let share = if share < ROUNDING { 0.0 } else { share };
+        let share = if share > 1.0 - ROUNDING { 1.0 } else { share };
+        let shares = [(next as u32 - 1, 1.0 - share), (next as u32, share)].into_iter();
+        Some(shares.filter(|s| s.1 > 0.0).collect())
+    });
+    let own = own.collect();
+    by_corner(&free.facets, own, places.len())
 }
 
 /// Gives every crossing of a star along which the crack turns a multiplier of its own: held together by one, faces that slide along

@@ -151,7 +151,7 @@ impl CrackFacets {
     }
 
     /// Parts the segment of a plane crack that crosses the distance d from a place [m].
-    fn part(&mut self, from: &Point, d: f64) {
+    pub fn part(&mut self, from: &Point, d: f64) {
         /// Corners this near to it, in parts of d, are there.
         const THERE: f64 = 1e-6;
         let beyond = |c: usize| norm(&sub(&self.corners[c].x, from)) - d;

@@ -2,13 +2,14 @@
 //!
 //! The first branch function jumps along the line behind its tip, as far as that goes. So only nodes carry it whose cells
 //! hold no part of that line but the crack itself: a bend, another crack, the other end are the end of a tip's room. A tip
-//! without that room for its own cells ends like one without branch functions, on the last cell edge it crosses; a short
-//! straight crack with none at either end takes functions of both ends at once.
+//! without that room for its own cells ends like one without branch functions, on the last cell edge it crosses; short
+//! straight cracks take functions of both ends at once.
 //!
 //! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards.
 
 pub mod corners;
 mod ends;
+mod pairs;
 mod room;
 mod solid;
 
@@ -17,17 +18,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use self::corners::Corner;
+use self::pairs::Pair;
 use crate::cut::arrangement::{Arrangement, Chain};
-use crate::cut::crack::{Crack, End, Tip};
+use crate::cut::crack::{Crack, Tip};
 use crate::cut::part::Face;
 use crate::cut::partition::{BorderPiece, Partition};
-use crate::cut::placement;
 use crate::cut::regions;
 use crate::geometry::boxes::Boxes;
 use crate::geometry::curve::turned;
 use crate::geometry::segments::Segments;
-use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::geometry::tip_frame::TipFrame;
+use crate::geometry::{Point, dot, norm, sub};
 use crate::mesh::neighbours::Neighbours;
 use crate::mesh::{Facet, Lengths, Mesh};
 
@@ -100,7 +101,8 @@ impl Tips {
                 .iter()
                 .map(|t| arms[t.arm].tip != Tip::None)
                 .collect(),
-            pairs: BTreeSet::new(),
+            pairs: Vec::new(),
+            paired: BTreeSet::new(),
             partitions: BTreeMap::new(),
             parted: BTreeSet::new(),
             extents: Boxes::new(arms.iter().map(Crack::extents)),
@@ -149,13 +151,9 @@ impl Tips {
                 tips.add(end.frame, &[], zone);
             }
         }
-        for &arm in &search.pairs {
-            let cells: Vec<usize> = search.cells_of(arm, 0.0);
-            let own = search.tips_of[arm].iter().map(|&t| &arrangement.tips[t]);
-            let at_ends: Vec<usize> = own.flat_map(|t| t.cells.iter().copied()).collect();
-            let mut zone = Zone::plain(mesh.nodes_of(cells));
-            zone.arms = vec![arm];
-            tips.add(pair_frame(&arms[arm], arm), &at_ends, zone);
+        for pair in &search.pairs {
+            let (frame, at_ends, zone) = search.pair_zone(pair);
+            tips.add(frame, &at_ends, zone);
         }
         search.add_corners(&mut tips);
         (tips.partitions, tips.parted) = (search.partitions, search.parted);
@@ -195,8 +193,9 @@ struct Search<'a> {
     arrangement: &'a Arrangement,
     /// By tip: whether it does, so far.
     kept: Vec<bool>,
-    /// Arms with functions of both ends.
-    pairs: BTreeSet<usize>,
+    /// Short cracks with functions of both ends, and their arms.
+    pairs: Vec<Pair>,
+    paired: BTreeSet<usize>,
     /// The border of the body, and the tips by place.
     border: Segments,
     tips_by_place: Boxes,
@@ -232,7 +231,7 @@ impl Search<'_> {
 
     fn keeps(&self, arm: usize, end: usize) -> bool {
         let mut tips = self.tips_of[arm].iter();
-        self.pairs.contains(&arm)
+        self.paired.contains(&arm)
             || tips.any(|&t| self.kept[t] && self.arrangement.tips[t].end == end)
     }
 
@@ -412,40 +411,4 @@ impl Search<'_> {
         let end = self.end(number);
         end.room > least && !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes))
     }
-
-    /// Straight arms with two ends inside the body, none of which has room: they take functions of both.
-    fn add_pairs(&mut self) -> bool {
-        for (index, arm) in self.arms.iter().enumerate() {
-            let own = self.tips_of[index].iter().filter(|&&t| !self.kept[t]);
-            let cells = self.cells_of(index, 0.0);
-            let alone = cells.iter().all(|cell| {
-                let chains = self.arrangement.chains.get(cell);
-                let mut chains = chains.into_iter().flatten();
-                chains.all(|c| c.arm == index || !self.divides(c))
-            });
-            if arm.tip != Tip::None
-                && arm.ends == [End::Free; 2]
-                && arm.path.len() == 2
-                && own.count() == 2
-                && alone
-                && !cells.is_empty()
-                && self.inside(index) > SHORTEST * self.lengths.smallest
-            {
-                self.pairs.insert(index);
-            }
-        }
-        !self.pairs.is_empty()
-    }
-}
-
-/// Frame of the functions of both ends of a straight arm.
-fn pair_frame(arm: &Crack, index: usize) -> TipFrame {
-    let [p, q] = [arm.path[0].x, arm.path[arm.path.len() - 1].x];
-    let d = sub(&q, &p);
-    let middle = add_scaled(&p, 0.5, &d);
-    let mut frame = placement::tip_frame(index, arm, 1, &middle);
-    frame.shape = FrontShape::Pair {
-        half_length: 0.5 * norm(&d),
-    };
-    frame
 }

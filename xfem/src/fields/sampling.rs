@@ -1,15 +1,15 @@
 //! The points at which the discrete field of a cell is compared with an exact one.
 //!
 //! The rules that integrate the stiffness are exact for the discrete functions only. An exact field with a crack tip near
-//! varies faster: here rules are in polar coordinates around the tips nearby, and tetrahedra are halved towards a front.
+//! varies faster: here rules are in polar coordinates around every tip nearby, in solids on parts halved towards the front.
 
 use crate::cut::part::Part;
 use crate::cut::partition::Partition;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::TipFrame;
-use crate::geometry::{Point, add_scaled, cross, diameter, norm, polygon, sub};
+use crate::geometry::{Point, diameter, polygon};
+use crate::quadrature::WeightedPoint;
 use crate::quadrature::graded::graded_points;
-use crate::quadrature::{WeightedPoint, tip_points};
 use crate::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint, whole_cell};
 use crate::stiffness::near_front::{Effort, NearFront};
 
@@ -48,12 +48,12 @@ pub fn comparison_points(
     let divided = integrator.enrichment.ending(cell).unwrap_or(&whole);
     let parts = &partition.unwrap_or(divided).parts;
     let rule: Vec<(WeightedPoint, usize)> = if mesh.dim() == 2 {
-        (parts.iter().enumerate())
-            .flat_map(|(number, part)| {
-                let points = flat_points(part, fronts, n, map.is_affine());
-                points.into_iter().map(move |p| (p, number))
-            })
-            .collect()
+        let tips: Vec<Point> = fronts.iter().flat_map(TipFrame::tips).collect();
+        let of_part = |(number, part): (usize, &Part)| {
+            let points = graded_points(&polygon::pieces(&part.polygon), &tips, [n; 2]);
+            points.into_iter().map(move |p| (p, number))
+        };
+        parts.iter().enumerate().flat_map(of_part).collect()
     } else {
         let near = NearFront {
             map: &map,
@@ -74,29 +74,4 @@ pub fn comparison_points(
         Ok(ComparisonPoint { point, side })
     };
     rule.into_iter().map(located).collect()
-}
-
-/// Points of a 2D part: a fan about the tip in its closure, or polar coordinates around the tips beside it.
-fn flat_points(part: &Part, fronts: &[TipFrame], n: usize, affine: bool) -> Vec<WeightedPoint> {
-    let triangles = part.triangles();
-    let size = diameter(&part.polygon);
-    let tips: Vec<Point> = fronts.iter().map(|f| f.position).collect();
-    let inside = tips.iter().find(|tip| {
-        triangles.iter().any(|t| {
-            let area = |a: &Point, b: &Point, c: &Point| 0.5 * norm(&cross(&sub(b, a), &sub(c, a)));
-            let fan = polygon::edges(t).map(|(p, q)| area(tip, &p, &q));
-            fan.sum::<f64>() <= area(&t[0], &t[1], &t[2]) + 1e-10 * size * size
-        })
-    });
-    let Some(tip) = inside else {
-        return graded_points(&polygon::pieces(&part.polygon), &tips, [n; 2]);
-    };
-    // Each outer edge in n/4 parts: doubling n doubles the angular points of the fan, too.
-    let count = n.div_ceil(4);
-    let edges = polygon::edges(&part.polygon).flat_map(|(a, b)| {
-        let edge = sub(&b, &a);
-        let at = move |k: usize| add_scaled(&a, k as f64 / count as f64, &edge);
-        (0..count).map(move |k| (at(k), at(k + 1)))
-    });
-    tip_points(edges, tip, affine && n <= 4)
 }

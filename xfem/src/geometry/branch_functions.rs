@@ -74,31 +74,43 @@ fn half_polar(psi: f64, phi: f64, r: f64) -> [f64; 2] {
 ///   g = { Im (ζ − z), Re (ζ − z), y Re (Z − 1), y Im Z }        [[g₁]] = 2 √(a² − x²), the others are continuous
 /// ```
 ///
-/// They hold the displacement of a crack in an infinite plane under uniform load, less its linear part.
-pub(super) fn pair_functions(a: f64, x: f64, y: f64) -> [[f64; 3]; 4] {
+/// They hold the displacement of a crack in an infinite plane under uniform load, less its linear part. Between a bent crack and the
+/// line between its ends ζ has the other sign, so that it is cut along the crack.
+pub(super) fn pair_functions(a: f64, x: f64, y: f64, between: bool) -> [[f64; 3]; 4] {
     let root = |x: f64| {
         let r = x.hypot(y);
         let [s, c] = half_polar(x, y, r);
         [r.sqrt() * c, r.sqrt() * s]
     };
     let product = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
-    let [re, im] = product(root(x - a), root(x + a));
+    let sign = if between { -1.0 } else { 1.0 };
+    let [re, im] = product(root(x - a), root(x + a)).map(|v| sign * v);
     let square = re * re + im * im;
-    let values = |z: [f64; 2]| [im - y, re - x, y * (z[0] - 1.0), y * z[1]];
+    // ζ − z = −a²/(ζ + z): far from a short crack that cancels nothing.
+    let same = re * x + im * y > 0.0;
+    let [p, q] = [re + x, im + y];
+    let less = if same {
+        let scale = a * a / (p * p + q * q);
+        [-scale * p, scale * q]
+    } else {
+        [re - x, im - y]
+    };
     if square == 0.0 {
-        return values([1.0, 0.0]).map(|value| [value, 0.0, 0.0]);
+        return [less[1], less[0], 0.0, 0.0].map(|value| [value, 0.0, 0.0]);
     }
     let inverse = [re / square, -im / square];
-    let z = product([x, y], inverse);
-    // dZ/dz = (1 − Z²)/ζ
-    let [z2, z2i] = product(z, z);
-    let dz = product([1.0 - z2, -z2i], inverse);
+    // Z − 1 = (z − ζ)/ζ,   dZ/dz = (1 − Z)(1 + Z)/ζ
+    let one_less = product(less.map(|v| -v), inverse);
+    let dz = product(
+        product(less, inverse),
+        product([2.0 + one_less[0], one_less[1]], inverse),
+    );
     // f analytic: ∂x Re f = Re f', ∂y Re f = −Im f', ∂x Im f = Im f', ∂y Im f = Re f'
-    let values = values(z);
+    let [u, v] = one_less;
     [
-        [values[0], z[1], z[0] - 1.0],
-        [values[1], z[0] - 1.0, -z[1]],
-        [values[2], y * dz[0], z[0] - 1.0 - y * dz[1]],
-        [values[3], y * dz[1], z[1] + y * dz[0]],
+        [less[1], v, u],
+        [less[0], u, -v],
+        [y * u, y * dz[0], u - y * dz[1]],
+        [y * v, y * dz[1], v + y * dz[0]],
     ]
 }

@@ -7,7 +7,7 @@ use super::branch_functions::{pair_functions, root_functions, root_values};
 use super::clip::Side;
 use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
-use super::{Point, Points, add_scaled, cross, dot, norm, sub, unit};
+use super::{Point, Points, add_scaled, cross, dot, mean, norm, sub, unit};
 
 /// A point this near to the line of an arm lies on it, in parts of its distance from the corner.
 const ON_ARM: f64 = 1e-8;
@@ -43,10 +43,14 @@ pub enum FrontShape {
     },
     /// A chain: its vertices from the tip on, each farther away than those before. θ starts on it at every distance.
     Bent(Vec<Point>),
-    /// A straight crack with both its ends; the position is its middle.
+    /// A crack with both its ends, from one to the other along the axis ahead, which ends in the second; the position is its middle.
     Pair {
-        /// Half of its length [m].
+        /// Half of the distance of its ends [m].
         half_length: f64,
+        /// They themselves [m].
+        ends: [Point; 2],
+        /// Where it bends, ahead of the middle and across, in this order [m].
+        bends: Vec<[f64; 2]>,
     },
     /// The front of an elliptic crack in 3D.
     Ellipse(Ellipse),
@@ -75,6 +79,24 @@ impl TipFrame {
             normal,
             shape: FrontShape::Straight,
         }
+    }
+
+    /// A crack with both its ends, given by its ends and bends, each farther along the line between the ends than those before.
+    pub fn of_both_ends(crack: usize, path: &[Point]) -> Self {
+        let [p, q] = [path[0], path[path.len() - 1]];
+        let ahead = unit(&sub(&q, &p));
+        let mut frame = TipFrame::straight(crack, mean([&p, &q]), ahead, turned(&ahead));
+        let inner = path.iter().skip(1).take(path.len() - 2);
+        let local = |x: &Point| {
+            let at = frame.coordinates(x);
+            [at.psi, at.phi]
+        };
+        frame.shape = FrontShape::Pair {
+            bends: inner.map(local).collect(),
+            ends: [p, q],
+            half_length: 0.5 * norm(&sub(&q, &p)),
+        };
+        frame
     }
 
     /// Coordinates of a point.
@@ -152,7 +174,7 @@ impl TipFrame {
     pub fn distance(&self, x: &Point) -> f64 {
         let at = self.coordinates(x);
         match self.shape {
-            FrontShape::Pair { half_length } => (at.psi.abs() - half_length).hypot(at.phi),
+            FrontShape::Pair { half_length, .. } => (at.psi.abs() - half_length).hypot(at.phi),
             _ => (at.psi * at.psi + at.phi * at.phi).sqrt(),
         }
     }
@@ -166,7 +188,7 @@ impl TipFrame {
                 Curve::Arc { radius: r, .. } => radius * (2.0 + radius / r),
                 Curve::Chain(_) => f64::INFINITY,
             },
-            FrontShape::Pair { half_length } => radius + half_length,
+            FrontShape::Pair { half_length, .. } => radius + half_length,
             FrontShape::Ellipse(e) => radius + e.half_axes[0].max(e.half_axes[1]),
         };
         around([&self.position], reach)
@@ -208,10 +230,8 @@ impl TipFrame {
 
     /// Tips of a 2D crack, where the branch functions are singular [m].
     pub fn tips(&self) -> Vec<Point> {
-        match self.shape {
-            FrontShape::Pair { half_length } => [half_length, -half_length]
-                .map(|s| add_scaled(&self.position, s, &self.ahead))
-                .to_vec(),
+        match &self.shape {
+            FrontShape::Pair { ends, .. } => ends.to_vec(),
             FrontShape::Ellipse(_) => Vec::new(),
             _ => vec![self.position],
         }
@@ -262,17 +282,20 @@ impl TipFrame {
         }
         if let Some(side) = side {
             let reach = match self.shape {
-                FrontShape::Pair { half_length } => Some(half_length),
+                FrontShape::Pair { half_length, .. } => Some(half_length),
                 _ => None,
             };
             // How far from its line a point still lies on the arm, in parts of r: rounding.
-            let width = match self.shape {
+            let width = match &self.shape {
                 FrontShape::Corner => ON_ARM,
+                FrontShape::Pair { bends, .. } if !bends.is_empty() => -1.0,
                 _ => f64::INFINITY,
             };
+            // Of a point on the arm, however near to the corner.
+            let rounding = 4.0 * f64::EPSILON * norm(&self.position);
             for q in 0..L {
                 // Ahead of the tip, and beside an arm, the place tells.
-                if phi[q].abs() > width * psi[q].abs() {
+                if phi[q].abs() > width * psi[q].abs() + rounding {
                     continue;
                 }
                 if reach.map_or(psi[q] <= 0.0, |reach| psi[q].abs() <= reach) {
@@ -287,6 +310,27 @@ impl TipFrame {
         ([psi, phi], [ahead, across])
     }
 
+    /// The functions of both ends of a crack at L points, if these are its.
+    #[inline(always)]
+    fn pair<const L: usize>(
+        &self,
+        psi: &[f64; L],
+        phi: &[f64; L],
+        side: Option<Side>,
+    ) -> Option<[[[f64; 3]; 4]; L]> {
+        let FrontShape::Pair {
+            half_length, bends, ..
+        } = &self.shape
+        else {
+            return None;
+        };
+        let a = *half_length;
+        Some(from_fn(|q| {
+            let (x, y) = (psi[q], phi[q]);
+            pair_functions(a, x, y, lies_between(a, bends, [x, y], side))
+        }))
+    }
+
     /// Branch functions at L points on one side, by function and point.
     #[inline(always)]
     pub fn branch_values<const L: usize>(
@@ -295,11 +339,10 @@ impl TipFrame {
         side: Option<Side>,
     ) -> [[f64; L]; 4] {
         let ([psi, phi], _) = self.placed(x, side);
-        let FrontShape::Pair { half_length } = self.shape else {
-            return root_values(&psi, &phi);
-        };
-        let own: [_; L] = from_fn(|q| pair_functions(half_length, psi[q], phi[q]));
-        from_fn(|l| own.map(|own| own[l][0]))
+        if let Some(own) = self.pair(&psi, &phi, side) {
+            return from_fn(|l| own.map(|own| own[l][0]));
+        }
+        root_values(&psi, &phi)
     }
 
     /// The same with their gradients, by function, direction and point.
@@ -311,17 +354,30 @@ impl TipFrame {
     ) -> ([[f64; L]; 4], [Points<L>; 4]) {
         let ([psi, phi], [ahead, across]) = self.placed(x, side);
         // By function: value, slope ahead, slope across.
-        let g: [[[f64; L]; 3]; 4] = if let FrontShape::Pair { half_length } = self.shape {
-            let own: [_; L] = from_fn(|q| pair_functions(half_length, psi[q], phi[q]));
-            from_fn(|l| from_fn(|k| own.map(|own| own[l][k])))
-        } else {
-            root_functions(&psi, &phi)
+        let g: [[[f64; L]; 3]; 4] = match self.pair(&psi, &phi, side) {
+            Some(own) => from_fn(|l| from_fn(|k| own.map(|own| own[l][k]))),
+            None => root_functions(&psi, &phi),
         };
         let gradient = |[_, g1, g2]: [[f64; L]; 3]| {
             from_fn(|a| from_fn(|q| g1[q] * ahead[a][q] + g2[q] * across[a][q]))
         };
         (g.map(|g| g[0]), g.map(gradient))
     }
+}
+
+/// Whether a point, ahead and across, lies between a bent crack and the line from end to end. A point of the crack lies on the `side`
+/// of its region.
+fn lies_between(a: f64, bends: &[[f64; 2]], [x, y]: [f64; 2], side: Option<Side>) -> bool {
+    if bends.is_empty() || x.abs() >= a {
+        return false;
+    }
+    let next = bends.partition_point(|bend| bend[0] <= x);
+    let from = next.checked_sub(1).map_or([-a, 0.0], |k| bends[k]);
+    let to = bends.get(next).copied().unwrap_or([a, 0.0]);
+    let above = y - (from[1] + (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1]));
+    let on = above.abs() <= ON_ARM * a;
+    let left = side.filter(|_| on).unwrap_or(above) > 0.0;
+    left != y.is_sign_positive()
 }
 
 #[cfg(test)]

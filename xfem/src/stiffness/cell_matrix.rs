@@ -18,12 +18,12 @@ use crate::enrichment::Enrichment;
 use crate::enrichment::cell_functions::CellFunctions;
 use crate::enrichment::facets::{CrackFacets, Facet};
 use crate::geometry::clip::Side;
-use crate::geometry::{Point, cross, norm, polygon, sub};
+use crate::geometry::{Point, polygon};
 use crate::material::{Dilatation, Lame};
 use crate::mesh::Mesh;
 use crate::mesh::cell::{CellMap, Nodal};
 use crate::quadrature::graded::{FAR, graded_points};
-use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure, tip_points};
+use crate::quadrature::{Quadrature, WeightedPoint, gauss_map, measure};
 
 use super::dilatation::ProjectedDilatation;
 use super::elasticity::{CellMatrix, Gram};
@@ -185,34 +185,21 @@ impl<'a> CellIntegrator<'a> {
         let tips = self
             .enrichment
             .singular_points_near(map, FAR * map.diagonal());
-        let near = self.enrichment.singular_points_near(map, map.diagonal());
-        // A pair of tips has none of its own at its middle, and beside another tip a fan around one is no rule.
-        let tip = self.tips_in(cell).first();
-        let tip = tip.map(|&(_, tip)| self.enrichment.tips[tip].tips());
-        let tip = tip.filter(|own| own.len() == 1 && near.len() == 1);
-        // Beside other cracks a part may not see the tip from all over its outline.
-        let sees = |part: &Part, tip: &Point| {
-            polygon::edges(&part.polygon).all(|(p, q)| {
-                let [from, to] = [&p, &q].map(|x| sub(x, tip));
-                cross(&from, &to)[2] >= -1e-12 * map.diagonal() * norm(&sub(&q, &p))
-            })
-        };
         // Errors of 1e-12; a ramp squared raises the degree by four.
         let ramps = self.enrichment.ramps_in(self.mesh.cell(cell), cell);
         let order = if ramps { [12, 8] } else { [10, 6] };
         let mut points = Vec::new();
         for (region, part) in parts.iter().enumerate() {
-            let rule = match (branch, &tip) {
-                (true, Some(tip)) if sees(part, &tip[0]) => {
-                    tip_points(polygon::edges(&part.polygon), &tip[0], affine && !ramps)
-                }
-                (true, _) => graded_points(&polygon::pieces(&part.polygon), &tips, order),
-                (false, _) if affine => part.points(),
-                (false, _) => part.fine_points(map),
+            let rule = if branch {
+                graded_points(&polygon::pieces(&part.polygon), &tips, order)
+            } else if affine {
+                part.points()
+            } else {
+                part.fine_points(map)
             };
             points.extend(rule.into_iter().map(|p| (p, region)));
         }
-        // The sinh rule of a tip fan integrates constants to its own accuracy, not to rounding.
+        // A rule in polar coordinates integrates constants to its own accuracy, not to rounding.
         let tolerance = if branch { 1e-6 } else { 1e-11 };
         if branch || !affine {
             fill(parts, &mut points);

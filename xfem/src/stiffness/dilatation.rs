@@ -22,9 +22,9 @@
 
 use crate::cut::part::Region;
 use crate::enrichment::basis::{ABSENT, FunctionKind};
-use crate::geometry::Point;
 use crate::geometry::clip::Side;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
+use crate::geometry::{Point, dot};
 use crate::material::Lame;
 
 use super::cell_matrix::{CellIntegrator, SidedPoint};
@@ -88,12 +88,18 @@ impl<'a> ProjectedDilatation<'a> {
         projected
     }
 
-    /// 1 and, for every tip, r^−½ sin θ/2 and r^−½ cos θ/2.
+    /// 1 and, for every tip, r^−½ sin θ/2 and r^−½ cos θ/2; for both ends of a crack Im Z and Re Z − 1, the slopes of its first
+    /// branch function.
     fn shapes(&self, region: Region, x: &Point) -> Vec<f64> {
         let mut shapes = vec![1.0];
         for (tip, sides) in &self.tips {
+            let (values, gradients) = tip.branch(x, sides[region]);
+            if let FrontShape::Pair { .. } = tip.shape {
+                shapes.extend([&tip.ahead, &tip.normal].map(|axis| dot(&gradients[0], axis)));
+                continue;
+            }
             // √r sin θ/2, √r cos θ/2, …
-            let [s, c, ..] = tip.branch(x, sides[region]).0;
+            let [s, c, ..] = values;
             let r = s * s + c * c;
             shapes.extend([s, c].map(|g| if r > 0.0 { g / r } else { 0.0 }));
         }
@@ -201,9 +207,7 @@ fn tips<'a>(integrator: &CellIntegrator<'a>, cell: usize) -> Vec<Tip<'a>> {
         let FunctionKind::Branch { tip, .. } = enrichment.functions[f as usize].kind else {
             continue;
         };
-        // Near a crack of a few cells with functions of both ends, the mean has to do.
-        let pair = matches!(enrichment.tips[tip as usize].shape, FrontShape::Pair { .. });
-        if pair || numbers.contains(&tip) {
+        if numbers.contains(&tip) {
             continue;
         }
         numbers.push(tip);

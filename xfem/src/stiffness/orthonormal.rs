@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::enrichment::basis::FunctionKind;
 use crate::enrichment::{Enrichment, Zone};
+use crate::geometry::tip_frame::FrontShape;
 use crate::mesh::Mesh;
 
 use super::elasticity::{CellMatrix, CellView};
@@ -161,7 +162,9 @@ impl SolverBasis {
         nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
         for (tip, Zone { nodes, radius, .. }) in zones {
             let mixed = || nodes.iter().any(|node| zones_of[node] > 1);
-            if *radius == 0.0 || nodes.len() <= SMALL && mixed() {
+            // Seen from some cells away a short crack is a point.
+            let pair = matches!(tip.shape, FrontShape::Pair { .. });
+            if *radius == 0.0 || nodes.len() <= SMALL && (pair || mixed()) {
                 // Which of equals goes must not depend on how the body is turned.
                 let lengths = &enrichment.lengths;
                 let key = |&node: &u32| {

@@ -201,8 +201,12 @@ impl Search<'_> {
 
     /// Whether an arm is straight and asks for branch functions.
     fn carries(&self, arm: usize) -> bool {
-        let crack = &self.arms[arm];
-        crack.tip != Tip::None && matches!(crack.geometry, Geometry::Curve(Curve::Chain(_)))
+        self.arms[arm].tip != Tip::None && self.is_chain(arm)
+    }
+
+    /// Whether an arm is no arc.
+    pub(super) fn is_chain(&self, arm: usize) -> bool {
+        matches!(self.arms[arm].geometry, Geometry::Curve(Curve::Chain(_)))
     }
 
     /// The nodes around a corner with the cells given; `others`: arms that may run through them, too. `deep`: see [`DEEP`] [m].

@@ -128,6 +128,25 @@ impl Search<'_> {
         })
     }
 
+    /// The nodes within the largest radius around both ends of a crack that no other crack enters.
+    pub(super) fn pair_ramp(
+        &self,
+        end: &Ending,
+        arms: &[usize],
+        radius: f64,
+        own: BTreeSet<u32>,
+    ) -> Zone {
+        let own = (own, WITHIN * self.lengths.smallest);
+        Zone::widest(
+            self.mesh,
+            &self.near,
+            &end.frame,
+            radius,
+            own,
+            |cells, _| self.holds_only(arms, cells),
+        )
+    }
+
     /// Whether none but some arms run through some cells.
     pub(super) fn holds_only(&self, arms: &[usize], cells: &BTreeSet<usize>) -> bool {
         let parted = cells.iter().filter_map(|cell| self.partitions.get(cell));
