@@ -13,4 +13,5 @@ pub mod memory;
 pub mod nodal_forces;
 pub mod quantities;
 pub mod refusals;
+pub mod resolution;
 pub mod snapshot;

@@ -2,7 +2,7 @@
 
 use super::output::warn;
 use crate::case::Case;
-use crate::model::quantities::PointState;
+use crate::model::resolution::Coarse;
 use crate::report::number::significant;
 use crate::studies::results::Results;
 
@@ -10,11 +10,9 @@ use crate::studies::results::Results;
 const SOFT_PA: std::ops::Range<f64> = 1.0..1e6;
 /// Mean strain above which small displacements are a wrong model [-].
 const LARGE_STRAIN: f64 = 0.05;
-/// Contact points below which a crack says little.
-const FEW_POINTS: usize = 4;
 
-/// Warns of a case; `points`: contact points by crack.
-pub fn on_case(case: &Case, points: &[usize]) {
+/// Warns of a case; `coarse`: cracks for which the cells of a mesh are too coarse, with its label.
+pub fn on_case<'a>(case: &Case, coarse: impl IntoIterator<Item = (&'a str, &'a Coarse)>) {
     let name = &case.name;
     if case.cracks.is_empty() {
         warn(format_args!("{name}: no crack, nothing to compare"));
@@ -26,15 +24,15 @@ pub fn on_case(case: &Case, points: &[usize]) {
             "{name}: young_pa = {young}: the unit is Pa, 1 GPa is 1e9"
         ));
     }
-    for (index, &count) in points.iter().enumerate().filter(|own| *own.1 < FEW_POINTS) {
-        let crack = index + 1;
+    for (mesh, Coarse { crack, why, cell_m }) in coarse {
+        let cell = significant(*cell_m, 2);
         warn(format_args!(
-            "{name}: crack {crack} has {count} contact points: a finer mesh would tell more"
+            "{name} {mesh}: crack {crack}: {why}: slip and dissipation may be off by more than 3 %, cells of {cell} m would do"
         ));
     }
 }
 
-/// Warns of runs of a case: of the mesh that has fewest contact points on a crack, and of large strains.
+/// Warns of runs of a case: of cells that are too coarse, and of large strains.
 pub fn on_results(case: &Case, results: &Results) {
     let own = || {
         results
@@ -42,15 +40,18 @@ pub fn on_results(case: &Case, results: &Results) {
             .iter()
             .filter(|own| own.record.asked.case == case.name)
     };
-    let count = |crack: usize| {
-        let of = |points: &Vec<PointState>| {
-            let own = points.iter().filter(|point| point.crack == crack + 1);
-            own.count()
-        };
-        own().filter_map(|own| own.points.last()).map(of).min()
-    };
-    let points: Vec<usize> = (0..case.cracks.len()).filter_map(count).collect();
-    on_case(case, &points);
+    let told = own().flat_map(|own| {
+        let found = &own.record.found;
+        let mesh = found.problem.as_ref().map_or("", |size| &size.mesh);
+        found.coarse.iter().map(move |coarse| (mesh, coarse))
+    });
+    let mut once: Vec<(&str, &Coarse)> = Vec::new();
+    for own in told {
+        if !once.contains(&own) {
+            once.push(own);
+        }
+    }
+    on_case(case, once);
     let [low, high] = case.mesh.grid.extents();
     let volume: f64 = (0..case.model.dim()).map(|a| high[a] - low[a]).product();
     let steps = own().flat_map(|own| &own.record.found.increments);

@@ -14,6 +14,7 @@ use crate::model::body::{Body, Needs};
 use crate::model::cost::{Cost, predicted};
 use crate::model::extent::{LoadExtent, SupportExtent, load_extents, support_extents};
 use crate::model::loading::Loading;
+use crate::model::resolution::too_coarse;
 use crate::report::number::significant;
 use crate::run::choice::choices;
 use crate::studies::axes::friction_values;
@@ -73,9 +74,8 @@ pub fn check(Arguments { files }: Arguments) -> Result<bool, CliError> {
             let supports = support_extents(&case, &body);
             lines.extend(supports.iter().map(support_line));
             lines.iter().for_each(|line| say(format_args!("{line}")));
-            let mut points = vec![0; case.cracks.len()];
-            body.points.iter().for_each(|own| points[own.crack] += 1);
-            advice::on_case(&case, &points);
+            let coarse = too_coarse(&body);
+            advice::on_case(&case, coarse.iter().map(|own| (body.label.as_str(), own)));
         }
     }
     Ok(true)

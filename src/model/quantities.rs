@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::files::nan;
 use crate::model::body::Body;
 use crate::model::boundary::region_name;
-use crate::model::snapshot::{Snapshot, tangential};
+use crate::model::snapshot::Snapshot;
 
 /// One quantity of interest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -149,16 +149,16 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
     }
     // Every crack, and all of them together.
     let all: Vec<usize> = (0..body.points.len()).collect();
-    let places = std::iter::once((String::new(), all.clone(), now.deepest_overlap())).chain(
-        now.overlap.iter().enumerate().map(|(crack, &deepest)| {
+    let places = std::iter::once((String::new(), all.clone(), now.largest())).chain(
+        now.extremes.iter().enumerate().map(|(crack, &most)| {
             let own = all
                 .iter()
                 .copied()
                 .filter(|&i| body.points[i].crack == crack);
-            (format!("crack-{}", crack + 1), own.collect(), deepest)
+            (format!("crack-{}", crack + 1), own.collect(), most)
         }),
     );
-    for (at, own, deepest) in places {
+    for (at, own, [deepest, slip]) in places {
         if !at.is_empty() {
             for c in 0..dim {
                 let total = own.iter().map(|&i| now.p[i * dim + c]).sum();
@@ -177,8 +177,7 @@ pub fn quantities(case: &Case, body: &Body, now: &Snapshot) -> Vec<Quantity> {
         push("max_gap", &at, "", largest(&|i| now.jump[i * dim]));
         push("max_penetration", &at, "", largest(&|i| -now.jump[i * dim]));
         push("max_penetration_sampled", &at, "", deepest);
-        let slip = |i: usize| tangential(&now.jump, dim, i);
-        push("max_slip", &at, "", largest(&slip));
+        push("max_slip", &at, "", slip);
         if !at.is_empty() {
             // Mean over the surface of the crack: NaN for one without contact points.
             let area: f64 = own.iter().map(|&i| body.points[i].weight).sum();

@@ -15,7 +15,7 @@
 //! an increment, or faces open or close. Both tend to the same work as increments are added.
 
 use stickslip_methods::{ContactState, PointStatus};
-use stickslip_xfem::contact::surface_point::max_penetration;
+use stickslip_xfem::contact::surface_point::extremes;
 
 use crate::model::body::Body;
 use crate::model::loading::Loading;
@@ -48,8 +48,8 @@ pub struct Snapshot {
     pub rounding: f64,
     /// Work since time 0.
     pub work: Work,
-    /// Deepest overlap of the faces of every crack of the case, between its contact points too [m].
-    pub overlap: Vec<f64>,
+    /// Deepest overlap of the faces and largest slip of every crack of the case, between its contact points too [m].
+    pub extremes: Vec<[f64; 2]>,
 }
 
 impl Snapshot {
@@ -68,13 +68,13 @@ impl Snapshot {
             strain_energy: 0.0,
             rounding: 0.0,
             work: Work::none(body.integrated.len()),
-            overlap: vec![0.0; body.integrated.len()],
+            extremes: vec![[0.0; 2]; body.integrated.len()],
         }
     }
 
-    /// Deepest overlap of the faces of all cracks [m].
-    pub fn deepest_overlap(&self) -> f64 {
-        self.overlap.iter().copied().fold(0.0, f64::max)
+    /// Deepest overlap of the faces and largest slip of all cracks [m].
+    pub fn largest(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.extremes.iter().map(|own| own[i]).fold(0.0, f64::max))
     }
 
     /// The state a method returned at the end of an increment, after the given one; `consistency` as its claim asks,
@@ -106,7 +106,7 @@ impl Snapshot {
         let mut now = Snapshot {
             external: loading.external_force(increment),
             time: loading.time(increment),
-            overlap: sampled_penetration(body, &u, &jump),
+            extremes: sampled_extremes(body, &u, &jump),
             jump,
             p: state.p.clone(),
             consistency: consistency.unwrap_or_default().to_vec(),
@@ -154,20 +154,22 @@ impl Snapshot {
     }
 }
 
-/// Deepest overlap of the faces of every crack [m], between its contact points too. Along cell facets the jump of a crack is
-/// linear between its points, which then hold its extremes.
-fn sampled_penetration(body: &Body, u: &[f64], jump: &[f64]) -> Vec<f64> {
+/// Deepest overlap of the faces and largest slip of every crack [m], between its contact points too. Along cell facets the jump of a
+/// crack is linear between its points, which then hold its extremes.
+fn sampled_extremes(body: &Body, u: &[f64], jump: &[f64]) -> Vec<[f64; 2]> {
     let (dim, integrator) = (body.mesh.dim(), body.integrator());
-    let deepest = |crack: usize| {
+    let of_crack = |crack: usize| {
         if body.cracks.iter().any(|c| c.number == crack) {
             let own = body.samples.iter().filter(|s| s.crack == crack);
-            return max_penetration(&integrator, own, u);
+            return extremes(&integrator, own, u);
         }
-        let points = body.points.iter().zip(jump.chunks_exact(dim));
-        let own = points.filter(|(point, _)| point.crack == crack);
-        own.map(|(_, jump)| -jump[0]).fold(0.0, f64::max)
+        let own = (0..body.points.len()).filter(|&i| body.points[i].crack == crack);
+        let at = |i: usize| [-jump[i * dim], tangential(jump, dim, i)];
+        own.map(at).fold([0.0; 2], |most, own| {
+            [0, 1].map(|i| f64::max(most[i], own[i]))
+        })
     };
-    (0..body.integrated.len()).map(deepest).collect()
+    (0..body.integrated.len()).map(of_crack).collect()
 }
 
 /// Length of the tangential part of a vector at a contact point.

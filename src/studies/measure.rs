@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use stickslip_methods::PointStatus;
 
 use crate::model::errors::errors;
+use crate::model::resolution::{Sliding, too_coarse};
 use crate::run::choice::Choice;
 use crate::run::path::{Guess, Moment, Run};
 use crate::run::progress::Progress;
@@ -56,12 +57,15 @@ pub fn measure(scene: &Scene<'_>, task: &Task, choice: &Choice) -> Result<Answer
     };
     let (mut answer, mut work) = (Seen::default(), Vec::new());
     let mut status: Option<Vec<PointStatus>> = None;
-    let mut failed = Ok(());
+    let (mut failed, mut sliding) = (Ok(()), Sliding::default());
     let end = run.follow(&mut |moment| {
         let Moment { solved, now, .. } = moment;
         let mut step = Step::of(moment.number, solved, status.as_deref(), now);
         work.extend(solved.work);
         status = solved.judged.as_ref().map(|judged| judged.status.clone());
+        if let (Some((_, loading)), Some(status)) = (scene.body(), &status) {
+            sliding.see(loading.body(), status);
+        }
         answer.look(scene, &looking, &moment, &mut step);
         if let Err(error) = ask(scene, task, choice, moment, &mut found) {
             failed = Err(error);
@@ -70,6 +74,10 @@ pub fn measure(scene: &Scene<'_>, task: &Task, choice: &Choice) -> Result<Answer
     });
     failed?;
     found.verdict = end.verdict;
+    if let Some((_, loading)) = scene.body() {
+        found.coarse = too_coarse(loading.body());
+        found.coarse.extend(sliding.too_coarse());
+    }
     let mut output_s = f64::NAN;
     if let (Some((case, loading)), Some(now)) = (scene.body(), &end.now) {
         let body = loading.body();

@@ -9,6 +9,7 @@ use stickslip_methods::{PointStatus, Residuals};
 use crate::files::nan;
 use crate::model::errors::Deviation;
 use crate::model::quantities::{EXACT, Quantity};
+use crate::model::resolution::Coarse;
 use crate::model::snapshot::Snapshot;
 use crate::run::judged::{JudgedIncrement, Seconds, Work};
 use crate::run::verdict::Verdict;
@@ -126,6 +127,9 @@ pub struct Found {
     /// Relative error of the mesh in the energy norm with its kind, where a second mesh was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_error: Option<(f64, String)>,
+    /// Cracks for which the cells are too coarse.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub coarse: Vec<Coarse>,
     /// Why it gave up, where that was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Explanation>,
@@ -287,7 +291,7 @@ impl Step {
             global_factorisations: counters.global_factorisations,
             local_solves: counters.local_solves,
             judge: Judge::of(judged.map(|j| &j.found)),
-            overlap_m: now.map_or(f64::NAN, Snapshot::deepest_overlap),
+            overlap_m: now.map_or(f64::NAN, |now| now.largest()[0]),
             state_changes: history.iter().map(|i| i.changes).sum(),
             final_changes: moved.count(),
             states: [PointStatus::Open, PointStatus::Stick, PointStatus::Slip].map(count),
@@ -426,6 +430,7 @@ impl Found {
             deviations: Vec::new(),
             values: Vec::new(),
             energy_error: None,
+            coarse: Vec::new(),
             why: None,
             stops: Vec::new(),
             check: None,

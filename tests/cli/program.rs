@@ -457,7 +457,11 @@ fn what_is_hardly_meant_is_told() {
     std::fs::write(dir.path().join("whole.toml"), text("", "[0, -1e-3]")).unwrap();
     let told = |arguments: &[&str]| stickslip(arguments, dir.path()).2;
     let soft = told(&["run", "soft.toml", "-m", "hybrid", "--fields", "none"]);
-    for part in ["young_pa = 210:", "crack 1 has", "strains of 2"] {
+    for part in [
+        "young_pa = 210:",
+        "crack 1: 1 contact point: ",
+        "strains of 2",
+    ] {
         assert!(soft.contains(part), "{soft}");
     }
     assert!(told(&["check", "whole.toml"]).contains("no crack, nothing to compare"));

@@ -143,6 +143,101 @@ impl Field for Griffith {
     }
 }
 
+/// Open crack along an arc of a circle, counter-clockwise, in an infinite plate under equal tension in all directions: the potentials
+/// of Muskhelishvili (Some Basic Problems, § 124), in parts of the radius from the centre, the arc's middle on the x axis.
+#[derive(Debug, Clone, Copy)]
+pub struct ArcCrack {
+    pub centre: [f64; 2],
+    pub radius: f64,
+    /// Angle of its middle, half of its own.
+    pub middle: f64,
+    pub half: f64,
+    pub tension: f64,
+    pub lame: Lame,
+}
+
+impl ArcCrack {
+    /// φ, φ', φ'', ψ and ψ' at a point as seen from a side of the arc next to it.
+    fn potentials(&self, z: Complex<f64>, side: f64) -> [Complex<f64>; 5] {
+        let beside = (z.norm() - 1.0).abs() < 0.01 && z.arg().abs() < self.half;
+        // Beyond the arc the root goes on with the other sign.
+        let sign = if beside && side * (1.0 - z.norm()) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let [a, b] = [-self.half, self.half].map(|t| Complex::from_polar(1.0, t));
+        let root = |z: Complex<f64>| {
+            let of = |w: Complex<f64>| (-w * (1.0 - b) / (1.0 - a)).sqrt();
+            sign * (z - b) * of((z - a) / (z - b)) / of(Complex::new(1.0, 0.0))
+        };
+        let cos = self.half.cos();
+        let lead = self.tension / (3.0 - cos);
+        let rest = 0.5 * self.tension * (1.0 - (1.0 + cos) / (3.0 - cos));
+        let slope = |z: Complex<f64>| lead * (z - cos) / root(z);
+        let (phi, dphi) = (lead * root(z) + 0.5 * rest * z, slope(z) + 0.5 * rest);
+        let ddphi = lead / root(z) - slope(z) * 0.5 * (1.0 / (z - a) + 1.0 / (z - b));
+        let mirror = 1.0 / z.conj();
+        let omega = (lead * root(mirror) - 0.5 * rest * mirror).conj();
+        let domega = (slope(mirror) - 0.5 * rest).conj();
+        let psi = omega - dphi / z;
+        let dpsi = (dphi - z * ddphi - domega) / (z * z);
+        [phi, dphi, ddphi, psi, dpsi]
+    }
+
+    fn local(&self, x: &Point) -> Complex<f64> {
+        let [x, y] = [0, 1].map(|a| (x[a] - self.centre[a]) / self.radius);
+        Complex::new(x, y) * Complex::from_polar(1.0, -self.middle)
+    }
+
+    /// Displacement gradient ∂u_a/∂x_b.
+    pub fn gradient(&self, x: &Point, side: f64) -> [Point; 3] {
+        let z = self.local(x);
+        let [_, dphi, ddphi, _, dpsi] = self.potentials(z, side);
+        let turn = Complex::from_polar(1.0, self.middle);
+        let (even, odd) = (
+            kolosov(self.lame) * dphi - dphi.conj(),
+            z * ddphi.conj() + dpsi.conj(),
+        );
+        // Along the axes that turn with the arc's middle.
+        let [p, q] =
+            [even - odd, Complex::<f64>::i() * (even + odd)].map(|d| d / (2.0 * self.lame.mu));
+        let (sin, cos) = self.middle.sin_cos();
+        let [dx, dy] = [p * cos - q * sin, p * sin + q * cos].map(|d| d * turn);
+        [[dx.re, dy.re, 0.0], [dx.im, dy.im, 0.0], [0.0; 3]]
+    }
+}
+
+impl Field for ArcCrack {
+    fn displacement(&self, x: &Point, side: f64) -> Point {
+        let z = self.local(x);
+        let [phi, dphi, _, psi, _] = self.potentials(z, side);
+        let u = kolosov(self.lame) * phi - z * dphi.conj() - psi.conj();
+        let u = u * Complex::from_polar(self.radius / (2.0 * self.lame.mu), self.middle);
+        [u.re, u.im, 0.0]
+    }
+
+    fn stress(&self, x: &Point, side: f64) -> [Point; 3] {
+        stress(self.lame, 2, &self.gradient(x, side))
+    }
+
+    fn traction(&self, _x: &Point) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    fn jump(&self, x: &Point) -> [f64; 3] {
+        let [one, two] = [1.0, -1.0].map(|side| self.displacement(x, side));
+        sub(&one, &two)
+    }
+
+    fn intensity(&self, _front: &Point) -> Option<[f64; 3]> {
+        let quarter = 0.5 * self.half;
+        let length = (PI * self.radius * self.half.sin()).sqrt();
+        let k = self.tension * length / (1.0 + quarter.sin().powi(2));
+        Some([k * quarter.cos(), k * quarter.sin(), 0.0])
+    }
+}
+
 pub fn lame() -> Lame {
     let material = Material {
         young: 1.0,
@@ -176,6 +271,46 @@ pub fn open() -> Griffith {
 pub fn plate(field: &Griffith, cells: usize, tip: &str) -> String {
     let [p, q] = field.ends();
     let rest = crack(p, q, 0.3, tip) + &clamped(2);
+    plane([-1.0, -1.0], [1.0, 1.0], [cells, cells], &rest)
+}
+
+/// An arc of 120 degrees, pulled open.
+pub fn arc() -> ArcCrack {
+    ArcCrack {
+        centre: [0.03, -0.32],
+        radius: 0.6,
+        middle: 80f64.to_radians(),
+        half: 60f64.to_radians(),
+        tension: 1e-3,
+        lame: lame(),
+    }
+}
+
+/// A plate around an arc, or around a chain of so many points on it, held on its outline.
+pub fn plate_of_arc(arc: &ArcCrack, cells: usize, points: Option<usize>) -> String {
+    let [from, to] = [-1.0, 1.0].map(|s| arc.middle + s * arc.half);
+    let shape = match points {
+        None => format!(
+            "arc = {{ centre_m = {:?}, radius_m = {:?}, from_deg = {:?}, to_deg = {:?} }}",
+            arc.centre,
+            arc.radius,
+            from.to_degrees(),
+            to.to_degrees()
+        ),
+        Some(count) => {
+            let at = |k: usize| from + (to - from) * k as f64 / (count - 1) as f64;
+            let place = |t: f64| {
+                let (sin, cos) = t.sin_cos();
+                [
+                    arc.centre[0] + arc.radius * cos,
+                    arc.centre[1] + arc.radius * sin,
+                ]
+            };
+            let points: Vec<[f64; 2]> = (0..count).map(at).map(place).collect();
+            format!("points_m = {points:?}")
+        }
+    };
+    let rest = format!("[[crack]]\n{shape}\nfriction = 0.3\n") + &clamped(2);
     plane([-1.0, -1.0], [1.0, 1.0], [cells, cells], &rest)
 }
 

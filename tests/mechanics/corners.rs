@@ -1,7 +1,7 @@
 //! Cracks that bend or end on each other: their friction against conforming elements, and however they are read.
 
 use crate::common::*;
-use stickslip_xfem::contact::surface_point::max_penetration;
+use stickslip_xfem::contact::surface_point::extremes;
 
 /// Polyline cracks with their friction in a square of 4 m, pushed down by 1 mm and aside.
 #[derive(Clone)]
@@ -61,7 +61,7 @@ impl Scene {
         let products = found.p().iter().zip(&found.jump);
         let slips = found.jump.chunks(2).map(|jump| jump[1].abs());
         let integrator = found.body.integrator();
-        let overlap = max_penetration(&integrator, &found.body.samples, &found.u);
+        let [overlap, _] = extremes(&integrator, &found.body.samples, &found.u);
         [
             -products.map(|(p, u)| p * u).sum::<f64>(),
             overlap / slips.fold(0.0, f64::max),

@@ -7,7 +7,7 @@ use crate::common::*;
 use stickslip::model::body::Body;
 use stickslip::model::errors::{Deviation, errors};
 use stickslip::model::snapshot::Snapshot;
-use stickslip_xfem::contact::surface_point::{SurfacePoint, max_penetration};
+use stickslip_xfem::contact::surface_point::{SurfacePoint, extremes};
 use stickslip_xfem::discretisation::norms::{Bulk, RULE, bulk};
 use stickslip_xfem::enrichment::basis::FunctionKind;
 use stickslip_xfem::geometry::{Point, add_scaled};
@@ -256,14 +256,15 @@ fn the_direction_of_slip_is_off_by_the_angle_between_means() {
     assert!(without.iter().all(|r| r.quantity != "slip_direction"));
 }
 
-/// Source: definition. Goal: the deepest overlap of sample points; none of an open crack.
+/// Source: definition. Goal: the deepest overlap of sample points, none of an open crack, and their largest slip.
 #[test]
-fn penetration_is_the_deepest_overlap_of_the_samples() {
+fn overlap_and_slip_are_the_largest_of_the_samples() {
     let (body, now, surface) = opened([-2e-3, 5e-2]);
     for samples in [&surface, &body.samples] {
-        let found = max_penetration(&body.integrator(), samples, &now.u);
-        assert!((found - 2e-3).abs() < 1e-15, "{found}");
+        let [overlap, slip] = extremes(&body.integrator(), samples, &now.u);
+        assert!((overlap - 2e-3).abs() < 1e-15, "{overlap}");
+        assert!((slip - 5e-2).abs() < 1e-14, "{slip}");
     }
     let (body, now, surface) = opened([2e-3, 5e-2]);
-    assert_eq!(max_penetration(&body.integrator(), &surface, &now.u), 0.0);
+    assert_eq!(extremes(&body.integrator(), &surface, &now.u)[0], 0.0);
 }

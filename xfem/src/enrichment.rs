@@ -29,8 +29,8 @@ use crate::mesh::{Lengths, Mesh};
 use self::basis::{ABSENT, Function, FunctionKind, STEP};
 pub use self::error::EnrichmentError;
 use self::supports::{Pieces, support_pieces};
-use self::tips::Tips;
 use self::tips::corners::Corner;
+use self::tips::{Narrow, Tips};
 pub use self::zone::Zone;
 
 /// A point closer to a tip than this, in units of the shortest edge at its nodes, is at the tip: the branch function jumps
@@ -48,6 +48,8 @@ pub struct Enrichment {
     pub tips: Vec<TipFrame>,
     /// Nodes around each of them.
     pub zones: Vec<Zone>,
+    /// 2D: tips that go without the ramp they ask for.
+    pub narrow: Vec<Narrow>,
     /// Arms of short cracks.
     short: BTreeSet<usize>,
     /// Cells with a tip in their closure or a front inside: (cell, tip number), sorted.
@@ -180,6 +182,7 @@ impl Enrichment {
         let pairs = pairs.filter(|(frame, _)| matches!(frame.shape, FrontShape::Pair { .. }));
         let mut enrichment = Enrichment {
             short: pairs.flat_map(|(_, zone)| &zone.arms).copied().collect(),
+            narrow: tips.narrow,
             node_ptr,
             at_tips,
             corners_of,

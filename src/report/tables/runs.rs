@@ -179,6 +179,8 @@ impl Row for RunRow<'_> {
             "iterations_saved" "" = r.saved(|own| own.found.sum(|i| i.iterations) as f64), "what that run took more";
             "factorisations_saved" "" = r.saved(|own| own.found.sum(|i| i.tangent_factorisations + i.global_factorisations) as f64), "dense and of K";
             "enforcement_saved_s" "s" .time() = r.saved(|own| published_times(own).map_or(f64::NAN, |s| s.enforcement.median_s)), "medians of both taken in turn; what the estimate took is not counted";
+            "coarse" "" .shown() = r.0.found.coarse.iter().map(|own| format!("crack {}: {}", own.crack, own.why)).collect::<Vec<_>>().join("; "), "cracks for which the cells are too coarse: their slip and dissipation may be off by more than 3 %";
+            "cell_m" "m" .shown().significant(2) = r.0.found.coarse.iter().map(|own| own.cell_m).reduce(f64::min), "cells that would do";
             "dim" "" = r.size(|size| size.dim), DIMENSION;
             "dofs" "" = r.size(|size| size.dofs), DOFS;
             "points" "" .shown() = r.size(|size| size.points), POINTS;

@@ -154,15 +154,17 @@ pub fn jump_at(
     })
 }
 
-/// Deepest overlap of the two faces over sample points, max(0, −gap) [m]; only position, sides and frame of a sample count.
-/// Between contact points nothing keeps the faces apart, so the samples should lie much closer than those, ten per facet.
-pub fn max_penetration<'a>(
+/// Deepest overlap of the two faces, max(0, −gap), and largest slip over sample points [m]; only position, sides and frame of a
+/// sample count. Between contact points nothing keeps the faces apart, and a mean over one is less than the largest slip there, so
+/// the samples should lie much closer than those, ten per facet.
+pub fn extremes<'a>(
     integrator: &CellIntegrator<'_>,
     samples: impl IntoIterator<Item = &'a SurfacePoint>,
     u: &[f64],
-) -> f64 {
-    samples
-        .into_iter()
-        .map(|sample| -sample.local(&sample.jump(integrator, u))[0])
-        .fold(0.0, f64::max)
+) -> [f64; 2] {
+    let jumps = samples.into_iter().map(|sample| {
+        let [gap, a, b] = sample.local(&sample.jump(integrator, u));
+        [-gap, a.hypot(b)]
+    });
+    jumps.fold([0.0; 2], |most, jump| [0, 1].map(|i| most[i].max(jump[i])))
 }

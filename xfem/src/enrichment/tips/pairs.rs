@@ -205,9 +205,8 @@ impl Search<'_> {
         pair.tips.len() == 1
             || pair.tips.iter().any(|&number| {
                 let tip = &self.arrangement.tips[number];
-                let asks = matches!(self.arms[tip.arm].tip, Tip::Auto | Tip::Radius(_));
                 let ramped = || !self.zone(tip, &self.end(number)).core.is_empty();
-                !self.kept[number] || asks && !ramped()
+                !self.kept[number] || self.asks(tip.arm) && !ramped()
             })
     }
 
