@@ -10,6 +10,7 @@
 //! The jump of a loaded or free crack goes on in r^(3/2) after √r, whatever smooth traction its faces carry. The cells at
 //! the front represent the field worst, so the nearest part is left out.
 
+mod behind;
 pub mod interaction;
 pub mod williams;
 

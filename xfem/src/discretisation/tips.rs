@@ -8,7 +8,7 @@ use crate::cut::crack::{Crack, Geometry};
 use crate::cut::placement::{self, cells_at};
 use crate::fields::sampling::ComparisonPoint;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, add_scaled, dot, norm, sub};
+use crate::geometry::{Point, add_scaled, cross, dot, norm, sub};
 use crate::intensity::interaction::{BodyForce, Domain, Fields, Obstacle, interaction};
 use crate::intensity::{FitRange, JumpSample, jump_fit, jump_fit_along};
 use crate::stiffness::cell_matrix::CellError;
@@ -197,12 +197,18 @@ impl<'a> SolvedBody<'a> {
             });
         }
         let own = (self.faces.iter()).filter(|(p, _)| p.crack == crack.number);
+        // A face that turns takes its jump along: what opens at the tip opens there.
+        let along = cross(&tip.normal, &[0.0, 0.0, 1.0]);
+        let turned = |p: &SurfacePoint, jump: &Point| {
+            let opening = tip.normal.map(|n| dot(jump, &p.frame[0]) * n);
+            add_scaled(&opening, dot(jump, &p.frame[1]), &along)
+        };
         let samples = own
             .map(|(p, _)| (p, norm(&sub(&p.x, &tip.position))))
             .filter(|(_, distance)| *distance <= ranges[0].to)
             .map(|(p, distance)| JumpSample {
                 distance,
-                jump: p.jump(&integrator, u),
+                jump: turned(p, &p.jump(&integrator, u)),
                 weight: p.weight,
             });
         let samples: Vec<JumpSample> = samples.collect();

@@ -1,20 +1,23 @@
 //! Stress intensity factors by the domain interaction integral, 2D.
 //!
-//! With q = 1 around the tip and 0 outside, u^aux the [unit fields](super::williams) and x₁ ahead:
+//! With q = 1 around the tip and 0 outside, u^aux the [unit fields](super::williams) of the tangent at the tip, [continued](super::behind)
+//! up to the faces, and x₁ ahead:
 //!
 //! ```text
 //!   I = ∫_A (σ_ij u^aux_i,1 + σ^aux_ij u_i,1 − σ_ik ε^aux_ik δ_1j) q_,j dA       domain, both sides of the crack
 //!     − ∫_A f_i u^aux_i,1 q dA                                                  body force f
-//!     − ∫_Γ λ_i [[u^aux_i,1]] q dΓ                                              contact traction λ on side 1, −λ on side 2
+//!     − Σ ∫_Γ (t_i u^aux_i,1 + σ^aux_ij m_j u_i,1 − σ_ik ε^aux_ik m_1) q dΓ     faces: m out of the body, t = λ on side 1, −λ on side 2
 //!
 //!   K = ½ E' I        for the mode of the auxiliary field
 //! ```
 //!
+//! It depends on no domain. Where the faces are straight the last two terms of them vanish. (An angle that follows the crack leaves
+//! −∫ σ^aux_ij,j u_i,1 q dA and more: an error of the curvature times the radius.)
+//!
 //! Yau, Wang & Corten, J. Appl. Mech. 47 (1980) 335; as a domain integral of an extended finite element solution: Moës,
 //! Dolbow & Belytschko, Int. J. Numer. Meth. Engng 46 (1999) 131; contact tractions: Dolbow, Moës & Belytschko, Comput. Meth.
-//! Appl. Mech. Engng 190 (2001) 6825. The auxiliary faces are free, so λ enters through σ_ij n_j u^aux_i,1 only. One
-//! homogeneous material without initial stress; the crack is straight within the domain. On a curved crack the terms of the
-//! curvature are left out: an error of the order of the domain's radius over that of the crack.
+//! Appl. Mech. Engng 190 (2001) 6825; curved faces, whose auxiliary tractions count: Gosz & Moran, Eng. Fract. Mech. 69 (2002) 299;
+//! Walters, Paulino & Dodds, Eng. Fract. Mech. 72 (2005) 1635. One homogeneous material without initial stress.
 
 use rayon::prelude::*;
 
@@ -27,8 +30,9 @@ use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, add_scaled, dot, norm, sub};
 use crate::material::{double_dot, stress};
 use crate::mesh::Mesh;
-use crate::stiffness::cell_matrix::{CellError, CellIntegrator};
+use crate::stiffness::cell_matrix::{CellError, CellIntegrator, SidedPoint};
 
+use super::behind::Behind;
 use super::williams::{Mode, Williams, plane_modulus};
 
 /// Displacement gradients ∂u_a/∂x_b at points of a cell; Hooke's law makes the stress of them.
@@ -60,7 +64,7 @@ pub struct Domain<'a> {
 }
 
 /// Why a domain does not stand alone around its tip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Obstacle {
     /// It is smaller than the cells at the tip.
     #[error("the cells at the tip")]
@@ -74,13 +78,11 @@ pub enum Obstacle {
     /// It reaches another crack.
     #[error("another crack")]
     Crack,
-    /// The crack leaves the line of the tip within it.
-    #[error("a bend of the crack")]
-    Bend,
+    /// A sharp bend of the crack, nearer than two cells, or one that turns it away from the tangent at the tip; cells of this size
+    /// [m] would do.
+    #[error("a bend of the crack, where cells of {0:.2e} m would do")]
+    Bend(f64),
 }
-
-/// Distance of a straight crack from the line of its tip, over that from the tip.
-const STRAIGHT: f64 = 0.05;
 
 /// K_I and K_II [Pa √m] at a tip in its frame, or what keeps the domain from standing alone around the tip.
 pub fn interaction(
@@ -100,29 +102,29 @@ pub fn interaction(
     cells.retain(|&cell| count(cell) > 0);
     // Those that the rules of these cells see.
     let sizes = cells.iter().map(|&cell| mesh.map(cell).diagonal());
-    let reach = domain.radius + 3.0 * sizes.fold(0.0, f64::max);
+    let size = sizes.fold(0.0, f64::max);
+    let reach = domain.radius + 3.0 * size;
     let near = |front: &&TipFrame| front.distance(&tip.position) <= reach;
     let fronts: Vec<TipFrame> = domain.fronts.iter().filter(near).cloned().collect();
-    let mut at_tip = cells_at(mesh, &tip.position).into_iter();
-    if at_tip.any(|cell| count(cell) < mesh.kind.nodes()) {
+    let at_tip = cells_at(mesh, &tip.position);
+    if at_tip.iter().any(|&cell| count(cell) < mesh.kind.nodes()) {
         return Ok(Err(Obstacle::Cells));
     }
-    if let Some(obstacle) = obstacle(integrator, tip, &fronts, &inside, &cells) {
+    let edges = at_tip.iter().map(|&cell| mesh.map(cell).longest_edge());
+    let edge = edges.fold(0.0, f64::max);
+    let behind = Behind::new(tip, integrator.cracks, [edge, domain.radius + size]);
+    if let Some(obstacle) = obstacle(integrator, &behind, &fronts, &inside, &cells) {
         return Ok(Err(obstacle));
     }
     let range = cells.first()..=cells.last();
     let in_domain = |c: &usize| range.contains(&Some(c)) && cells.binary_search(c).is_ok();
     // On a face with one side in the domain q is 0.
     let both = |p: &SurfacePoint| p.sides.iter().all(|side| in_domain(&side.cell));
-    let own_faces = fields.faces.iter().filter(|(p, _)| both(p));
-    let bends = |(p, _): &(&SurfacePoint, Point)| {
-        let away = sub(&p.x, &tip.position);
-        dot(&away, &tip.normal).abs() > STRAIGHT * norm(&away)
-    };
-    if own_faces.clone().any(bends) {
-        return Ok(Err(Obstacle::Bend));
+    let own_faces: Vec<_> = fields.faces.iter().filter(|(p, _)| both(p)).collect();
+    if let Some((p, _)) = own_faces.iter().find(|(p, _)| !behind.holds(&p.x)) {
+        return Ok(Err(behind.too_near(&p.x)));
     }
-    let modes = [Mode::I, Mode::II].map(|mode| Williams::new(tip, lame, mode));
+    let modes = [Mode::I, Mode::II].map(|mode| Williams::new(&behind.tangent, lame, mode));
     let of_cell = |&cell: &usize| -> Result<[f64; 2], CellError> {
         let ring = count(cell) < mesh.kind.nodes();
         if !ring && fields.body_force.is_none() {
@@ -142,7 +144,7 @@ pub fn interaction(
             let sigma = stress(lame, 2, h);
             let slope = ahead(h, tip);
             for (sum, mode) in sums.iter_mut().zip(&modes) {
-                let h_aux = mode.at(&p.x, None).1;
+                let h_aux = behind.gradient(mode, &p.x, at.side);
                 let sigma_aux = stress(lame, 2, &h_aux);
                 let slope_aux = ahead(&h_aux, tip);
                 // σ : ε^aux, σ being symmetric.
@@ -159,11 +161,31 @@ pub fn interaction(
     let add = |total: [f64; 2], part: [f64; 2]| [0, 1].map(|k| total[k] + part[k]);
     let mut total = parts.into_iter().fold([0.0; 2], add);
     for (point, traction) in own_faces {
-        let side = &point.sides[0]; // q is continuous
-        let (q, _) = weight(mesh, side.cell, &inside, &side.xi);
-        for (sum, mode) in total.iter_mut().zip(&modes) {
-            let [one, two] = [1.0, -1.0].map(|side| ahead(&mode.at(&point.x, Some(side)).1, tip));
-            *sum -= point.weight * q * dot(traction, &sub(&one, &two));
+        for (place, side) in point.sides.iter().zip([1.0, -1.0]) {
+            let (q, _) = weight(mesh, place.cell, &inside, &place.xi);
+            let outward = point.frame[0].map(|n| -side * n);
+            let at = ComparisonPoint {
+                point: SidedPoint {
+                    xi: place.xi,
+                    x: point.x,
+                    weight: point.weight,
+                    region: place.region,
+                },
+                side: Some(side),
+            };
+            let h = match behind.is_straight() {
+                true => [[0.0; 3]; 3], // σ^aux m = 0, m₁ = 0
+                false => (fields.gradients)(place.cell, &[at])?[0],
+            };
+            let (sigma, slope) = (stress(lame, 2, &h), ahead(&h, tip));
+            for (sum, mode) in total.iter_mut().zip(&modes) {
+                let h_aux = behind.gradient(mode, &point.x, Some(side));
+                let sigma_aux = stress(lame, 2, &h_aux);
+                let flux = side * dot(traction, &ahead(&h_aux, tip))
+                    + bilinear(&slope, &sigma_aux, &outward)
+                    - double_dot(&sigma, &h_aux) * dot(&tip.ahead, &outward);
+                *sum -= point.weight * q * flux;
+            }
         }
     }
     Ok(Ok(total.map(|i| 0.5 * plane_modulus(lame) * i)))
@@ -172,7 +194,7 @@ pub fn interaction(
 /// Another thing than the crack of the tip that disturbs the domain.
 fn obstacle(
     integrator: &CellIntegrator<'_>,
-    tip: &TipFrame,
+    behind: &Behind,
     fronts: &[TipFrame],
     inside: &dyn Fn(u32) -> bool,
     cells: &[usize],
@@ -184,18 +206,21 @@ fn obstacle(
     }
     cells.iter().find_map(|&cell| {
         let size = mesh.map(cell).diagonal();
-        let other_crack = integrator.enrichment.partition(cell).is_some_and(|p| {
-            let sides = p.parts.iter().flat_map(|part| &part.sides);
-            sides.into_iter().any(|s| s.0 != tip.crack)
-        });
+        let parts = integrator.enrichment.partition(cell).into_iter();
+        let sides = parts.flat_map(|p| p.parts.iter().flat_map(|part| &part.sides));
+        let mut others = sides.map(|s| s.0).filter(|arm| !behind.arms.contains(arm));
+        let number = |arm: usize| integrator.cracks[arm].number;
         let other_tip = fronts.iter().any(|front| {
-            norm(&sub(&front.position, &tip.position)) > 1e-9 * size
+            norm(&sub(&front.position, &behind.tangent.position)) > 1e-9 * size
                 && reference_position(mesh, cell, &front.position, 1e-9).is_some()
         });
-        match (other_tip, other_crack) {
-            (true, _) => Some(Obstacle::Tip),
-            (false, true) => Some(Obstacle::Crack),
-            (false, false) => None,
+        match others.next() {
+            _ if other_tip => Some(Obstacle::Tip),
+            Some(arm) if number(arm) == number(behind.arms[0]) => {
+                Some(behind.too_near(&mesh.centre(cell)))
+            }
+            Some(_) => Some(Obstacle::Crack),
+            None => None,
         }
     })
 }
