@@ -1,8 +1,8 @@
 //! The nodes around a tip or front that carry its branch functions, and the room that a front has.
 //!
 //! The ramp falls to zero over the cells around its nodes, and towards sides that cells of the tip do not touch: supports then
-//! hold none of the functions, and g₃ and g₄ of the nodes there are superfluous. It may hold no crack but its own; a radius is
-//! reduced until that is so. What other cracks cut off of a zone without ramp carries none of its functions.
+//! hold none of the functions, and g₃ and g₄ of the nodes there are superfluous. A radius is reduced until the ramp holds no crack
+//! but its own. Of the smallest ramp, or a zone without, what other cracks cut off carries none of its functions.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -40,16 +40,16 @@ impl Zone {
         }
     }
 
-    /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes and
-    /// by all nodes; at least those around the cells of the tip, `at_tip`, which stay alone if not even these are free. `slack`: see
-    /// [`WITHIN`](crate::cut::arrangement::WITHIN) [m].
+    /// The nodes within the largest radius up to a given one [m] that is `free`, judged by the cells of the ramp's nodes, by all nodes,
+    /// and by whether no ramp is smaller: what is cut off, or `None`. At least those around the cells of the tip, `at_tip`, which stay
+    /// alone if not even these are free. `slack`: see [`WITHIN`](crate::cut::arrangement::WITHIN) [m].
     pub(super) fn widest(
         mesh: &Mesh,
         near: &Neighbours<'_>,
         frame: &TipFrame,
         mut radius: f64,
         (at_tip, slack): (BTreeSet<u32>, f64),
-        free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>) -> bool,
+        free: impl Fn(&BTreeSet<usize>, &BTreeSet<u32>, bool) -> Option<BTreeSet<Place>>,
     ) -> Self {
         let of_side = |side| mesh.side_nodes(side).into_iter().map(|n| n as u32);
         let sides = mesh.sides.keys().map(|side| of_side(side).collect());
@@ -62,8 +62,10 @@ impl Zone {
             let inside: BTreeSet<u32> = candidates.iter().copied().filter(within).collect();
             let core = &(&inside - &beside) | &smallest;
             let nodes = near.nodes_around(&core);
-            if free(&near.cells_around(&core), &nodes) {
+            let last = core == smallest;
+            if let Some(cut_off) = free(&near.cells_around(&core), &nodes, last) {
                 return Zone {
+                    cut_off,
                     surplus: (&nodes & &beside).into_iter().collect(),
                     nodes,
                     core,
@@ -71,7 +73,7 @@ impl Zone {
                     ..Zone::default()
                 };
             }
-            if core == smallest {
+            if last {
                 return Zone::plain(at_tip);
             }
             radius *= 0.85;

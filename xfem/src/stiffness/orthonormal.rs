@@ -18,8 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use crate::enrichment::Enrichment;
 use crate::enrichment::basis::FunctionKind;
-use crate::enrichment::{Enrichment, Zone};
 use crate::geometry::tip_frame::FrontShape;
 use crate::mesh::Mesh;
 
@@ -144,7 +144,7 @@ impl SolverBasis {
         basis
     }
 
-    /// Looks for ties where there may be any: in zones without ramp, and in those of short cracks, which overlap.
+    /// Looks for ties where there may be any: in zones without ramp or cut by other cracks, and in those of short cracks, which overlap.
     fn search_zones<'a>(
         &mut self,
         mesh: &Mesh,
@@ -160,11 +160,13 @@ impl SolverBasis {
         let mut zones_of = BTreeMap::<u32, usize>::new();
         let nodes = zones.iter().flat_map(|(_, zone)| &zone.nodes);
         nodes.for_each(|&node| *zones_of.entry(node).or_default() += 1);
-        for (tip, Zone { nodes, radius, .. }) in zones {
+        for (tip, zone) in zones {
+            let nodes = &zone.nodes;
             let mixed = || nodes.iter().any(|node| zones_of[node] > 1);
             // Seen from some cells away a short crack is a point.
             let pair = matches!(tip.shape, FrontShape::Pair { .. });
-            if *radius == 0.0 || nodes.len() <= SMALL && (pair || mixed()) {
+            let cut = zone.radius == 0.0 || !zone.cut_off.is_empty();
+            if cut || nodes.len() <= SMALL && (pair || mixed()) {
                 // Which of equals goes must not depend on how the body is turned.
                 let lengths = &enrichment.lengths;
                 let key = |&node: &u32| {

@@ -227,11 +227,11 @@ impl Search<'_> {
         if cells.iter().any(slender) || room <= least {
             return None;
         }
-        let radii = own.iter().map(|&arm| self.radius(arm, room, room));
+        let radii = own.iter().map(|&arm| self.radius(arm, cells, room, room));
         let radius = radii.reduce(|a, b| Some(a?.min(b?))).flatten();
         let nodes = self.mesh.nodes_of(cells.iter().copied());
         let ramped = |radius: f64| {
-            let mut zone = self.within(radius, arms, nodes.clone());
+            let mut zone = self.within(radius, arms, nodes.clone(), false);
             if zone.core.is_empty() {
                 return None;
             }

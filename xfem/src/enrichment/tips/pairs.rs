@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 
 use crate::cut::crack::{End, Tip};
 use crate::cut::part::Place;
+use crate::geometry::boxes::around;
 use crate::geometry::polygon::bends;
 use crate::geometry::tip_frame::TipFrame;
 use crate::geometry::{Point, dot, norm, sub};
@@ -33,7 +34,7 @@ pub(super) struct Pair {
     /// Arms over which its functions jump, one after the other.
     pub arms: Vec<usize>,
     /// All arms of the crack.
-    run: Vec<usize>,
+    pub run: Vec<usize>,
     /// Its tips; one, if it starts at a side or on another crack.
     pub tips: Vec<usize>,
     /// Where it is bent and ends, mirrored if it has one tip [m].
@@ -172,11 +173,16 @@ impl Search<'_> {
     /// share a cell, or hold bends; or it is one arm with room for functions at neither.
     fn is_short(&self, pair: &Pair) -> bool {
         let ramp = |&tip: &usize| {
-            let beside = self.cells_beside(&self.arrangement.tips[tip].x);
-            let own = self.mesh.nodes_of(beside);
-            self.near.cells_around(&match self.arms[pair.arms[0]].tip {
+            let tip = &self.arrangement.tips[tip];
+            let own = self.mesh.nodes_of(self.cells_beside(&tip.x));
+            self.near.cells_around(&match self.arms[tip.arm].tip {
                 Tip::Branch => own,
-                _ => self.near.nodes_around(&own),
+                _ => {
+                    let size = self.least_radius(&tip.cells);
+                    let mut nodes = self.near.nodes_in(&around([&tip.x], size));
+                    nodes.retain(|&n| norm(&sub(&self.mesh.nodes[n as usize], &tip.x)) <= size);
+                    &nodes | &self.near.nodes_around(&own)
+                }
             })
         };
         let ramps: Vec<BTreeSet<usize>> = pair.tips.iter().map(ramp).collect();
@@ -217,26 +223,26 @@ impl Search<'_> {
         let nodes = self.mesh.nodes_of(cells);
         let places = pair.tips.iter().map(|&tip| self.arrangement.tips[tip].x);
         let clear = places.map(|x| self.clearance(&x, &pair.run, end.room));
-        let radius = self.radius(pair.arms[0], end.room, clear.fold(end.room, f64::min));
-        let wider = self.near.nodes_around(&nodes);
-        let alone =
-            |nodes: &BTreeSet<u32>| self.holds_only(&pair.run, &self.near.cells_around(nodes));
+        let radius = self.radius(
+            pair.arms[0],
+            &end.cells,
+            end.room,
+            clear.fold(end.room, f64::min),
+        );
         let mut zone = match radius {
-            Some(radius) => self.pair_ramp(&end, &pair.run, radius, nodes.clone()),
-            None => Zone::plain(nodes.clone()),
+            Some(radius) => self.pair_ramp(&end, pair, radius, nodes),
+            None => Zone::plain(nodes),
         };
-        if zone.core.is_empty() && radius.is_some() && alone(&wider) {
-            zone = Zone::plain(wider);
-        } else if zone.core.is_empty() {
+        if zone.core.is_empty() {
             zone.cut_off = self.cut_off_from(pair, &zone.nodes);
-            zone.nodes.retain(|&node| self.lives(node, &zone.cut_off));
         }
+        zone.nodes.retain(|&node| self.lives(node, &zone.cut_off));
         zone.arms.clone_from(&pair.arms);
         (end.frame, end.cells, zone)
     }
 
     /// Parts of the cells of some nodes that other cracks part from all of its tips.
-    fn cut_off_from(&self, pair: &Pair, nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
+    pub(super) fn cut_off_from(&self, pair: &Pair, nodes: &BTreeSet<u32>) -> BTreeSet<Place> {
         let cells = self.near.cells_around(nodes);
         let from = |&tip: &usize| {
             let tip = &self.arrangement.tips[tip];

@@ -14,7 +14,11 @@ use crate::geometry::tip_frame::FrontShape;
 
 use super::super::zone::Zone;
 use super::ends::Ending;
+use super::pairs::Pair;
 use super::{GRAZING, LONGER, SHARE, Search};
+
+/// The smallest ramp around a tip, in the longest edges of its cells: with the cells around these it spans one to two of square ones.
+const RAMP: f64 = 1.5;
 
 /// Nodes around a ramp are no farther away than this, in lengths of the arm: seen from there a short arm, or one in long cells, is
 /// nothing, and its functions become dependent.
@@ -71,10 +75,11 @@ impl Search<'_> {
     /// The nodes around a tip: within the largest radius that leaves it alone.
     pub(super) fn zone(&self, tip: &TracedTip, end: &Ending) -> Zone {
         let (arms, room) = ([end.clone()], end.room);
-        let radius = self.radius(tip.arm, room, self.clearance(&tip.x, &[tip.arm], room));
+        let clear = self.clearance(&tip.x, &[tip.arm], room);
+        let radius = self.radius(tip.arm, &tip.cells, room, clear);
         let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         let mut zone = match radius {
-            Some(radius) => self.within(radius, &arms, nodes),
+            Some(radius) => self.within(radius, &arms, nodes, true),
             None => Zone::plain(nodes),
         };
         if zone.core.is_empty() {
@@ -100,18 +105,31 @@ impl Search<'_> {
         })
     }
 
-    /// The radius that an arm asks for, if any. `clear`: the distance from other arms and the border [m].
-    pub(super) fn radius(&self, arm: usize, room: f64, clear: f64) -> Option<f64> {
+    /// The radius that an arm asks for, if any, at a tip in some cells: no shorter than these, or the ramp would be as flat as they
+    /// are. `clear`: the distance from other arms and the border [m].
+    pub(super) fn radius(&self, arm: usize, cells: &[usize], room: f64, clear: f64) -> Option<f64> {
         match self.arms[arm].tip {
             Tip::Radius(radius) => Some(radius.min(room)),
-            Tip::Auto => Some(SHARE * room.min(clear)),
+            Tip::Auto => Some(self.least_radius(cells).max(SHARE * room.min(clear))),
             Tip::Branch | Tip::None => None,
         }
     }
 
-    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there.
-    /// `arms`: their frames with the lengths that these know.
-    pub(super) fn within(&self, radius: f64, arms: &[Ending], at_tip: BTreeSet<u32>) -> Zone {
+    /// The smallest radius around a tip in some cells [m].
+    pub(super) fn least_radius(&self, cells: &[usize]) -> f64 {
+        let edges = cells.iter().map(|&cell| self.mesh.map(cell).longest_edge());
+        RAMP * edges.fold(0.0, f64::max)
+    }
+
+    /// The nodes within the largest radius around a place, its cells given, that no crack enters but the arms that end there; `cut`:
+    /// of the smallest others may cut off a part. `arms`: their frames with the lengths that these know.
+    pub(super) fn within(
+        &self,
+        radius: f64,
+        arms: &[Ending],
+        at_tip: BTreeSet<u32>,
+        cut: bool,
+    ) -> Zone {
         let (near, frame) = (&self.near, &arms[0].frame);
         let own: Vec<usize> = arms.iter().map(|arm| arm.frame.crack).collect();
         let far = FAR
@@ -120,30 +138,47 @@ impl Search<'_> {
                 .map(|arm| arm.room)
                 .fold(f64::INFINITY, f64::min);
         let at_tip = (at_tip, WITHIN * self.lengths.smallest);
-        Zone::widest(self.mesh, near, frame, radius, at_tip, |cells, nodes| {
-            let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
-            nodes.iter().all(close)
-                && self.holds_only(&own, cells)
-                && !self.any_blocked(arms, nodes)
-        })
+        Zone::widest(
+            self.mesh,
+            near,
+            frame,
+            radius,
+            at_tip,
+            |cells, nodes, last| {
+                let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
+                let cut_off = match self.holds_only(&own, cells) {
+                    true => BTreeSet::new(),
+                    false if cut && last => self.cut_off(&arms[0], nodes),
+                    false => return None,
+                };
+                let blocked = |arm| self.is_blocked(arm, nodes, &cut_off);
+                let free = nodes.iter().all(close) && !arms.iter().any(blocked);
+                free.then_some(cut_off)
+            },
+        )
     }
 
-    /// The nodes within the largest radius around both ends of a crack that no other crack enters.
+    /// The nodes within the largest radius around both ends of a crack that no other crack enters, or the smallest around their `own`
+    /// less what others part from both.
     pub(super) fn pair_ramp(
         &self,
         end: &Ending,
-        arms: &[usize],
+        pair: &Pair,
         radius: f64,
         own: BTreeSet<u32>,
     ) -> Zone {
         let own = (own, WITHIN * self.lengths.smallest);
+        let frame = &end.frame;
         Zone::widest(
             self.mesh,
             &self.near,
-            &end.frame,
+            frame,
             radius,
             own,
-            |cells, _| self.holds_only(arms, cells),
+            |cells, nodes, last| match self.holds_only(&pair.run, cells) {
+                true => Some(BTreeSet::new()),
+                false => last.then(|| self.cut_off_from(pair, nodes)),
+            },
         )
     }
 

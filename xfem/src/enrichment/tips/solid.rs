@@ -115,7 +115,9 @@ impl Tips {
             let mut zone = match radius {
                 Some(radius) => {
                     let near = near.get_or_insert_with(|| Neighbours::new(mesh));
-                    let free = |cells: &BTreeSet<usize>, _: &_| cells.iter().all(own);
+                    let free = |cells: &BTreeSet<usize>, _: &_, _| {
+                        cells.iter().all(own).then(BTreeSet::new)
+                    };
                     let at_front = (at_front, WITHIN * lengths.smallest);
                     Zone::widest(mesh, near, &frame, radius, at_front, free)
                 }
