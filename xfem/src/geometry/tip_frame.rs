@@ -9,7 +9,7 @@ use super::curve::{Curve, turned};
 use super::ellipse::Ellipse;
 use super::{Point, Points, add_scaled, cross, dot, mean, norm, sub, unit};
 
-/// A point this near to the line of an arm lies on it, in parts of its distance from the corner.
+/// A point this near to the line of an arm lies on it, in parts of its distance from the corner, or of half a short crack.
 const ON_ARM: f64 = 1e-8;
 
 /// A tip or front inside the body with its coordinates.
@@ -285,17 +285,19 @@ impl TipFrame {
                 FrontShape::Pair { half_length, .. } => Some(half_length),
                 _ => None,
             };
-            // How far from its line a point still lies on the arm, in parts of r: rounding.
-            let width = match &self.shape {
-                FrontShape::Corner => ON_ARM,
+            // How far from its line a point still lies on the arm: rounding.
+            let width = |psi: f64| match &self.shape {
+                FrontShape::Corner => {
+                    ON_ARM * psi.abs() + 4.0 * f64::EPSILON * norm(&self.position)
+                }
                 FrontShape::Pair { bends, .. } if !bends.is_empty() => -1.0,
+                // Beside the line of a leg lie others of its crack.
+                FrontShape::Pair { half_length, .. } => ON_ARM * half_length,
                 _ => f64::INFINITY,
             };
-            // Of a point on the arm, however near to the corner.
-            let rounding = 4.0 * f64::EPSILON * norm(&self.position);
             for q in 0..L {
                 // Ahead of the tip, and beside an arm, the place tells.
-                if phi[q].abs() > width * psi[q].abs() + rounding {
+                if phi[q].abs() > width(psi[q]) {
                     continue;
                 }
                 if reach.map_or(psi[q] <= 0.0, |reach| psi[q].abs() <= reach) {

@@ -132,30 +132,26 @@ impl Search<'_> {
     ) -> Zone {
         let (near, frame) = (&self.near, &arms[0].frame);
         let own: Vec<usize> = arms.iter().map(|arm| arm.frame.crack).collect();
-        let far = FAR
-            * arms
-                .iter()
-                .map(|arm| arm.room)
-                .fold(f64::INFINITY, f64::min);
+        let rooms = arms.iter().map(|arm| arm.room);
+        let room = rooms.fold(f64::INFINITY, f64::min);
+        let inside = own.iter().map(|&arm| self.inside(arm)).fold(room, f64::min);
         let at_tip = (at_tip, WITHIN * self.lengths.smallest);
-        Zone::widest(
-            self.mesh,
-            near,
-            frame,
-            radius,
-            at_tip,
-            |cells, nodes, last| {
-                let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
-                let cut_off = match self.holds_only(&own, cells) {
-                    true => BTreeSet::new(),
-                    false if cut && last => self.cut_off(&arms[0], nodes),
-                    false => return None,
-                };
-                let blocked = |arm| self.is_blocked(arm, nodes, &cut_off);
-                let free = nodes.iter().all(close) && !arms.iter().any(blocked);
-                free.then_some(cut_off)
-            },
-        )
+        let free = |cells: &BTreeSet<usize>, nodes: &BTreeSet<u32>, last| {
+            let alone = self.holds_only(&own, cells);
+            if !alone && !(cut && last) {
+                return None;
+            }
+            // Beyond a crossing an arm goes on, but not its functions.
+            let far = FAR * if alone { room } else { inside };
+            let close = |&node: &u32| frame.distance(&self.mesh.nodes[node as usize]) <= far;
+            let cut_off = match alone {
+                true => BTreeSet::new(),
+                false => self.cut_off(&arms[0], nodes),
+            };
+            let blocked = |arm| self.is_blocked(arm, nodes, &cut_off);
+            (nodes.iter().all(close) && !arms.iter().any(blocked)).then_some(cut_off)
+        };
+        Zone::widest(self.mesh, near, frame, radius, at_tip, free)
     }
 
     /// The nodes within the largest radius around both ends of a crack that no other crack enters, or the smallest around their `own`
