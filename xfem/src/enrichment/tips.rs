@@ -265,7 +265,7 @@ impl Search<'_> {
     }
 
     /// Whether the tips of an arm ask for a ramp.
-    fn asks(&self, arm: usize) -> bool {
+    pub(super) fn asks(&self, arm: usize) -> bool {
         matches!(self.arms[arm].tip, Tip::Auto | Tip::Radius(_))
     }
 

@@ -72,7 +72,10 @@ impl Search<'_> {
         let gentle = self.run(tip, BEND.cos());
         let own = gentle.own;
         let end = self.ending_of(tip, &frame, gentle, own);
-        let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
+        let mut nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
+        if self.asks(tip.arm) {
+            nodes = self.near.nodes_around(&self.near.nodes_around(&nodes));
+        }
         if !self.is_blocked(&end, &nodes, &self.cut_off(&end, &nodes)) {
             return end;
         }
