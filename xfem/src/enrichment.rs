@@ -462,7 +462,7 @@ fn beside((mesh, rounding): (&Mesh, f64), frame: &TipFrame, crack: &Crack, cell:
     let map = mesh.map(cell);
     let level = |(x, &node): (&Point, &u32)| match crack.holds(node) {
         true => 0.0,
-        false => snapped(frame.coordinates(x).phi, rounding),
+        false => snapped(frame.beside(x)[1], rounding),
     };
     let levels: Vec<f64> = map.iter().zip(mesh.cell(cell)).map(level).collect();
     if !is_split(&levels) {

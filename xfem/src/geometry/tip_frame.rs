@@ -41,7 +41,7 @@ pub enum FrontShape {
         /// Whether the tip is its last end.
         last: bool,
     },
-    /// A chain: its vertices from the tip on, each farther away than those before. θ starts on it at every distance.
+    /// A chain: its vertices from the tip on, each farther away than those before. θ of its end goes on up to it at every distance.
     Bent(Vec<Point>),
     /// A crack with both its ends, from one to the other along the axis ahead, which ends in the second; the position is its middle.
     Pair {
@@ -103,7 +103,10 @@ impl TipFrame {
     pub fn coordinates(&self, x: &Point) -> TipCoordinates {
         let d = sub(x, &self.position);
         match &self.shape {
-            FrontShape::Straight | FrontShape::Corner | FrontShape::Pair { .. } => TipCoordinates {
+            FrontShape::Straight
+            | FrontShape::Corner
+            | FrontShape::Bent(_)
+            | FrontShape::Pair { .. } => TipCoordinates {
                 psi: dot(&d, &self.ahead),
                 phi: dot(&d, &self.normal),
                 psi_gradient: self.ahead,
@@ -125,19 +128,6 @@ impl TipFrame {
                     phi_gradient: turned(&near.tangent),
                 }
             }
-            FrontShape::Bent(path) => {
-                let (turn, slope) = self.turn(path, norm(&d));
-                let (sin, cos) = turn.sin_cos();
-                let rotated = |v: &Point| add_scaled(&v.map(|c| cos * c), sin, &turned(v));
-                let across = turned(&d).map(|c| slope * c / dot(&d, &d).max(f64::MIN_POSITIVE));
-                let [a, n] = [&self.ahead, &self.normal].map(rotated);
-                TipCoordinates {
-                    psi: dot(&d, &a),
-                    phi: dot(&d, &n),
-                    psi_gradient: add_scaled(&a, -dot(&across, &a), &d),
-                    phi_gradient: add_scaled(&n, -dot(&across, &n), &d),
-                }
-            }
             FrontShape::Ellipse(ellipse) => {
                 let near = ellipse.nearest(x);
                 TipCoordinates {
@@ -150,14 +140,22 @@ impl TipFrame {
         }
     }
 
-    /// Angle β by which a chain has turned at distance r from its tip, and r dβ/dr, the tangent of its angle with the radius.
-    fn turn(&self, path: &[Point], r: f64) -> (f64, f64) {
-        let away = |x: &Point| norm(&sub(x, &self.position));
-        let last = path.len() - 2;
-        let first_beyond = path.iter().skip(1).position(|x| away(x) >= r);
-        let k = first_beyond.unwrap_or(last);
+    /// A point ahead of the tip and across the crack behind it [m]: bent as that may be, it lies at φ = 0, ψ < 0.
+    pub fn beside(&self, x: &Point) -> [f64; 2] {
+        let at = self.coordinates(x);
+        let FrontShape::Bent(path) = &self.shape else {
+            return [at.psi, at.phi];
+        };
+        let (sin, cos) = self.turn(path, at.psi.hypot(at.phi)).sin_cos();
+        [at.psi * cos - at.phi * sin, at.phi * cos + at.psi * sin]
+    }
+
+    /// Angle β, from the line behind the tip towards the normal, at which a chain lies at a distance r.
+    fn turn(&self, path: &[Point], r: f64) -> f64 {
+        let within = |x: &Point| norm(&sub(x, &self.position)) < r;
+        let k = path[1..path.len() - 1].partition_point(within);
         if k == 0 {
-            return (0.0, 0.0);
+            return 0.0;
         }
         let from = sub(&path[k], &self.position);
         let u = unit(&sub(&path[k + 1], &path[k]));
@@ -165,9 +163,19 @@ impl TipFrame {
         // Where |from + t u| = r.
         let t = -along + (along * along + r * r - dot(&from, &from)).max(0.0).sqrt();
         let x = add_scaled(&from, t, &u);
-        let back = self.ahead.map(|v| -v);
-        let turn = cross(&back, &x)[2].atan2(dot(&back, &x));
-        (turn, cross(&x, &u)[2] / dot(&x, &u))
+        dot(&x, &self.normal).atan2(-dot(&x, &self.ahead))
+    }
+
+    /// Whether a point, ahead and across, lies between a chain and the line behind its tip: the functions have the other sign there,
+    /// so that they jump on the chain. One of the chain lies on the `side` of its region.
+    fn lies_beyond(&self, path: &[Point], [psi, phi]: [f64; 2], side: Option<Side>) -> bool {
+        let r = psi.hypot(phi);
+        let beta = self.turn(path, r);
+        // −0 is the lower face.
+        let above = phi.atan2(-psi) - beta;
+        let on = above.abs() * r <= ON_ARM * r + 4.0 * f64::EPSILON * norm(&self.position);
+        let left = side.filter(|_| on).unwrap_or(above) > 0.0;
+        left != phi.is_sign_positive()
     }
 
     /// Distance r from the tip or front, the nearer of two [m].
@@ -290,6 +298,7 @@ impl TipFrame {
                 FrontShape::Corner => {
                     ON_ARM * psi.abs() + 4.0 * f64::EPSILON * norm(&self.position)
                 }
+                FrontShape::Bent(_) => -1.0,
                 FrontShape::Pair { bends, .. } if !bends.is_empty() => -1.0,
                 // Beside the line of a leg lie others of its crack.
                 FrontShape::Pair { half_length, .. } => ON_ARM * half_length,
@@ -333,6 +342,21 @@ impl TipFrame {
         }))
     }
 
+    /// Signs of the functions of a bent crack at L points, see [`Self::lies_beyond`].
+    #[inline(always)]
+    fn signs<const L: usize>(
+        &self,
+        psi: &[f64; L],
+        phi: &[f64; L],
+        side: Option<Side>,
+    ) -> Option<[f64; L]> {
+        let FrontShape::Bent(path) = &self.shape else {
+            return None;
+        };
+        let beyond = |q: usize| self.lies_beyond(path, [psi[q], phi[q]], side);
+        Some(from_fn(|q| if beyond(q) { -1.0 } else { 1.0 }))
+    }
+
     /// Branch functions at L points on one side, by function and point.
     #[inline(always)]
     pub fn branch_values<const L: usize>(
@@ -344,7 +368,11 @@ impl TipFrame {
         if let Some(own) = self.pair(&psi, &phi, side) {
             return from_fn(|l| own.map(|own| own[l][0]));
         }
-        root_values(&psi, &phi)
+        let values = root_values(&psi, &phi);
+        match self.signs(&psi, &phi, side) {
+            Some(signs) => values.map(|own| from_fn(|q| signs[q] * own[q])),
+            None => values,
+        }
     }
 
     /// The same with their gradients, by function, direction and point.
@@ -356,10 +384,13 @@ impl TipFrame {
     ) -> ([[f64; L]; 4], [Points<L>; 4]) {
         let ([psi, phi], [ahead, across]) = self.placed(x, side);
         // By function: value, slope ahead, slope across.
-        let g: [[[f64; L]; 3]; 4] = match self.pair(&psi, &phi, side) {
+        let mut g: [[[f64; L]; 3]; 4] = match self.pair(&psi, &phi, side) {
             Some(own) => from_fn(|l| from_fn(|k| own.map(|own| own[l][k]))),
             None => root_functions(&psi, &phi),
         };
+        if let Some(signs) = self.signs(&psi, &phi, side) {
+            g = g.map(|own| own.map(|own| from_fn(|q| signs[q] * own[q])));
+        }
         let gradient = |[_, g1, g2]: [[f64; L]; 3]| {
             from_fn(|a| from_fn(|q| g1[q] * ahead[a][q] + g2[q] * across[a][q]))
         };

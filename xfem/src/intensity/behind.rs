@@ -119,8 +119,8 @@ impl Behind {
 
     /// Whether a point of a crack is a part of it.
     pub fn holds(&self, x: &Point) -> bool {
-        let at = self.bent.coordinates(x);
-        at.psi < 0.0 && at.phi.abs() <= BESIDE * -at.psi
+        let [psi, phi] = self.bent.beside(x);
+        psi < 0.0 && phi.abs() <= BESIDE * -psi
     }
 
     /// Gradient of an auxiliary field, on the given side of the crack next to it.
@@ -129,7 +129,7 @@ impl Behind {
         if at.psi >= 0.0 {
             return mode.at(x, None).1;
         }
-        let side = side.unwrap_or_else(|| 1f64.copysign(self.bent.coordinates(x).phi));
+        let side = side.unwrap_or_else(|| 1f64.copysign(self.bent.beside(x)[1]));
         if side * at.phi < 0.0 {
             // Half the angle is off by π there.
             mode.at(x, None).1.map(|row| row.map(|v| -v))
