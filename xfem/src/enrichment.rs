@@ -456,8 +456,7 @@ impl Enrichment {
 
 /// Side of the line of a tip's crack on which a cell lies that this crack does not divide; 0 where the place tells.
 ///
-/// The line is that along which its functions jump: the crack may bend elsewhere. The chords of an arc leave cells whole that the arc
-/// enters.
+/// The line is that along which its functions jump: the crack may bend elsewhere.
 fn beside((mesh, rounding): (&Mesh, f64), frame: &TipFrame, crack: &Crack, cell: usize) -> Side {
     let map = mesh.map(cell);
     let level = |(x, &node): (&Point, &u32)| match crack.holds(node) {
@@ -472,11 +471,7 @@ fn beside((mesh, rounding): (&Mesh, f64), frame: &TipFrame, crack: &Crack, cell:
             1.0
         };
     }
-    let behind = map.iter().all(|x| frame.coordinates(x).psi < 0.0);
-    match frame.shape {
-        FrontShape::Arc { .. } if behind => 1.0f64.copysign(frame.coordinates(&map.centre()).phi),
-        _ => 0.0,
-    }
+    0.0
 }
 
 /// Whether a crack has a part inside the body.

@@ -1,7 +1,7 @@
 //! Where cracks lie in a mesh: which cells they run through, in which they end, their tips and fronts inside the body.
 
 use crate::geometry::Point;
-use crate::geometry::curve::{Curve, turned};
+use crate::geometry::curve::turned;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
 use crate::mesh::Mesh;
 
@@ -58,20 +58,13 @@ pub fn front_frame(index: usize, crack: &Crack) -> Option<TipFrame> {
 
 /// The tip at an end (0 or 1) of a 2D arm, at a place next to it.
 pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> TipFrame {
-    let (ahead, shape) = match &crack.geometry {
+    let ahead = match &crack.geometry {
         Geometry::Curve(curve) => {
             let along = curve.at(crack.range[end]).1;
             let ahead = if end == 0 { along.map(|v| -v) } else { along };
-            let shape = match curve {
-                Curve::Arc { .. } => FrontShape::Arc {
-                    curve: curve.clone(),
-                    last: end == 1,
-                },
-                Curve::Chain(_) => FrontShape::Straight,
-            };
-            (ahead, shape)
+            ahead
         }
-        _ => ([0.0; 3], FrontShape::Straight),
+        _ => [0.0; 3],
     };
     let along = if end == 0 { ahead.map(|v| -v) } else { ahead };
     TipFrame {
@@ -79,7 +72,7 @@ pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> T
         position: *position,
         ahead,
         normal: turned(&along),
-        shape,
+        shape: FrontShape::Straight,
     }
 }
 

@@ -5,7 +5,7 @@ use std::array::from_fn;
 use super::boxes::{Extents, around};
 use super::branch_functions::{pair_functions, root_functions, root_values};
 use super::clip::Side;
-use super::curve::{Curve, turned};
+use super::curve::turned;
 use super::ellipse::Ellipse;
 use super::{Point, Points, add_scaled, cross, dot, mean, norm, sub, unit};
 
@@ -34,14 +34,8 @@ pub enum FrontShape {
     Straight,
     /// Straight, up to a corner: other arms cross its line there, so that a side says nothing beyond the arm itself.
     Corner,
-    /// A circular arc.
-    Arc {
-        /// Its curve.
-        curve: Curve,
-        /// Whether the tip is its last end.
-        last: bool,
-    },
-    /// A chain: its vertices from the tip on, each farther away than those before. θ of its end goes on up to it at every distance.
+    /// A chain, or the chords of an arc: its vertices from the tip on, each farther away than those before. θ of its end goes on up to it
+    /// at every distance.
     Bent(Vec<Point>),
     /// A crack with both its ends, from one to the other along the axis ahead, which ends in the second; the position is its middle.
     Pair {
@@ -112,22 +106,6 @@ impl TipFrame {
                 psi_gradient: self.ahead,
                 phi_gradient: self.normal,
             },
-            FrontShape::Arc { curve, last } => {
-                // ψ runs along the arc: constant on its radii, so ∇ψ shrinks outwards.
-                let near = curve.nearest(x);
-                let sign = if *last { 1.0 } else { -1.0 };
-                let end = if *last { curve.length() } else { 0.0 };
-                let stretch = match curve {
-                    Curve::Arc { centre, radius, .. } => radius / norm(&sub(x, centre)),
-                    Curve::Chain(_) => 1.0,
-                };
-                TipCoordinates {
-                    psi: sign * (near.s - end),
-                    phi: near.phi,
-                    psi_gradient: near.tangent.map(|t| sign * stretch * t),
-                    phi_gradient: turned(&near.tangent),
-                }
-            }
             FrontShape::Ellipse(ellipse) => {
                 let near = ellipse.nearest(x);
                 TipCoordinates {
@@ -191,11 +169,6 @@ impl TipFrame {
     pub fn extents(&self, radius: f64) -> Extents {
         let reach = match &self.shape {
             FrontShape::Straight | FrontShape::Corner | FrontShape::Bent(_) => radius,
-            // ψ along a circle within the distance of it.
-            FrontShape::Arc { curve, .. } => match curve {
-                Curve::Arc { radius: r, .. } => radius * (2.0 + radius / r),
-                Curve::Chain(_) => f64::INFINITY,
-            },
             FrontShape::Pair { half_length, .. } => radius + half_length,
             FrontShape::Ellipse(e) => radius + e.half_axes[0].max(e.half_axes[1]),
         };
@@ -203,37 +176,14 @@ impl TipFrame {
     }
 
     /// The line behind a 2D tip from a distance on, along which the first branch function jumps whether there is a crack or
-    /// not: segments up to `far`, no longer than `step` where it is bent [m].
-    pub fn behind(&self, room: f64, far: f64, step: f64) -> Vec<[Point; 2]> {
-        let straight = |s: f64| add_scaled(&self.position, -s, &self.ahead);
+    /// not, up to `far` [m].
+    pub fn behind(&self, room: f64, far: f64) -> [Point; 2] {
         if let FrontShape::Bent(path) = &self.shape
             && let [.., from, to] = path.as_slice()
         {
-            return vec![[*to, add_scaled(to, 4.0 * far, &unit(&sub(to, from)))]];
+            return [*to, add_scaled(to, 4.0 * far, &unit(&sub(to, from)))];
         }
-        let FrontShape::Arc { curve, last } = &self.shape else {
-            return vec![[straight(room), straight(room + 4.0 * far)]];
-        };
-        let Curve::Arc {
-            centre,
-            radius,
-            from,
-            to,
-        } = curve
-        else {
-            return Vec::new();
-        };
-        // Back along the circle, to where its coordinate starts again; and the ray from the centre through there.
-        let length = curve.length();
-        let end = 0.5 * length + std::f64::consts::PI * radius - room;
-        let at = |s: f64| curve.at(if *last { length - s } else { s }).0;
-        let count = ((end / step).ceil().max(1.0) as usize).min(4096);
-        let place = |k: usize| at(room + end * k as f64 / count as f64);
-        let mut line: Vec<[Point; 2]> = (0..count).map(|k| [place(k), place(k + 1)]).collect();
-        let middle = 0.5 * (from + to);
-        let opposite = [-middle.cos(), -middle.sin(), 0.0];
-        line.push([*centre, add_scaled(centre, 4.0 * far, &opposite)]);
-        line
+        [room, room + 4.0 * far].map(|s| add_scaled(&self.position, -s, &self.ahead))
     }
 
     /// Tips of a 2D crack, where the branch functions are singular [m].
@@ -456,8 +406,8 @@ mod tests {
         tip
     }
 
-    /// Source: the map itself. Goal: on either side of a chain θ is ±π, and nowhere else does a function jump: half a turn around
-    /// the tip from there all are continuous. Tolerance: √ of the distance from the chain.
+    /// Source: the functions of the angle. Goal: those of the tangent go on up to either side of a chain, θ = ±π − β there, and nowhere
+    /// else does one jump: half a turn around the tip from there all are continuous. Tolerance: √ of the distance from the chain.
     #[test]
     fn functions_of_a_chain_jump_on_it_alone() {
         let tip = bent();
@@ -468,12 +418,22 @@ mod tests {
         for (w, t) in path.windows(2).flat_map(|w| [0.2, 0.7].map(|t| (w, t))) {
             let x = on(&w[0], &w[1], t);
             let across = turned(&unit(&sub(&w[1], &w[0])));
-            let r = norm(&sub(&x, &tip.position));
+            let from = sub(&x, &tip.position);
+            let (r, beta) = (
+                norm(&from),
+                dot(&from, &tip.normal).atan2(-dot(&from, &tip.ahead)),
+            );
             for sign in [1.0, -1.0] {
-                let beside = tip.branch(&add_scaled(&x, 1e-9 * sign, &across), None).0;
                 // The first segment leads back from the tip: its left is side 2.
-                assert!((beside[0] + sign * r.sqrt()).abs() < 1e-7, "{t} {sign}");
-                assert!(beside[1..].iter().all(|g| g.abs() < 1e-7), "{t} {sign}");
+                let theta = -sign * std::f64::consts::PI - beta;
+                let (s, c) = (0.5 * theta).sin_cos();
+                let exact = [s, c, s * theta.sin(), c * theta.sin()].map(|g| r.sqrt() * g);
+                let place = add_scaled(&x, 1e-9 * sign, &across);
+                for (x, side) in [(place, None), (x, Some(-sign))] {
+                    let found = tip.branch(&x, side).0;
+                    let error = (0..4).map(|l| (found[l] - exact[l]).abs());
+                    assert!(error.fold(0.0, f64::max) < 1e-7, "{t} {sign} {side:?}");
+                }
             }
             let opposite = add_scaled(&tip.position, -1.0, &sub(&x, &tip.position));
             let [p, q] = [1e-9, -1e-9].map(|d| add_scaled(&opposite, d, &across));

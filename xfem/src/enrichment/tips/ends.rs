@@ -3,10 +3,10 @@
 use crate::cut::arrangement::{BEND, TracedTip};
 use crate::cut::crack::{Crack, End, Geometry, on_crack};
 use crate::cut::placement;
-use crate::geometry::curve::Curve;
+use crate::geometry::curve::turned;
 use crate::geometry::polygon::bends;
 use crate::geometry::tip_frame::{FrontShape, TipFrame};
-use crate::geometry::{Point, dot, norm, sub};
+use crate::geometry::{Point, dot, norm, sub, unit};
 
 use super::Search;
 
@@ -59,16 +59,7 @@ impl Search<'_> {
     /// tell from the arm; where the arm is too short for its cells, along the crack around bends, too.
     pub(super) fn end(&self, number: usize) -> Ending {
         let tip = &self.arrangement.tips[number];
-        let arm = &self.arms[tip.arm];
-        let frame = placement::tip_frame(tip.arm, arm, tip.end, &tip.x);
-        let Geometry::Curve(Curve::Chain(_)) = &arm.geometry else {
-            return Ending {
-                frame,
-                room: (self.range(tip.arm)[1 - tip.end] - arm.range[tip.end]).abs(),
-                arms: vec![tip.arm],
-                cells: tip.cells.clone(),
-            };
-        };
+        let frame = placement::tip_frame(tip.arm, &self.arms[tip.arm], tip.end, &tip.x);
         let gentle = self.run(tip, BEND.cos());
         let own = gentle.own;
         let end = self.ending_of(tip, &frame, gentle, own);
@@ -90,6 +81,9 @@ impl Search<'_> {
         let mut frame = frame.clone();
         let bent = bends(&run.path, slack);
         if bent.len() > 2 {
+            // Along the first chord of an arc, not its tangent: as the cells are cut.
+            frame.ahead = unit(&sub(&tip.x, &run.path[bent[1]]));
+            frame.normal = turned(&frame.ahead).map(|v| if tip.end == 0 { -v } else { v });
             frame.shape = FrontShape::Bent(bent.into_iter().map(|k| run.path[k]).collect());
         }
         Ending {
@@ -114,7 +108,7 @@ impl Search<'_> {
         let mut before: Option<Point> = None;
         loop {
             let (own, range) = (&self.arms[arm], self.range(arm));
-            let Geometry::Curve(curve @ Curve::Chain(_)) = &own.geometry else {
+            let Geometry::Curve(curve) = &own.geometry else {
                 return run;
             };
             let whole = range[1 - end] == own.range[1 - end];

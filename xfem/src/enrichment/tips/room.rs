@@ -51,8 +51,7 @@ impl Search<'_> {
         cut_off: &BTreeSet<Place>,
     ) -> bool {
         let (size, _) = self.lengths.extent;
-        let line = (end.frame).behind(end.room, size, 0.1 * self.lengths.smallest);
-        let line = Segments::new(line);
+        let line = Segments::new(vec![end.frame.behind(end.room, size)]);
         let mut cells = self.near.cells_around(nodes).into_iter();
         cells.any(|cell| {
             let map = self.mesh.map(cell);
