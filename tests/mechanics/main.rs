@@ -11,6 +11,7 @@ mod energy;
 mod errors;
 mod exact;
 mod exact_curve;
+mod few_cells;
 mod fronts;
 mod geometries;
 mod incompressible;

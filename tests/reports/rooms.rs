@@ -267,9 +267,9 @@ fn imports_run_one_way() {
 /// count is that of the default formatting.
 #[rustfmt::skip]
 const BUDGETS: [(&str, usize); 14] = [
-    ("methods/src", 19_300), ("xfem/src", 24_360), ("src/files", 2075), ("src/case", 3323), ("src/model", 3090), ("src/run", 2325),
-    ("src/studies", 17_180), ("src/report", 10_545), ("src/cli", 2100), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
-    ("tests", 18_430),
+    ("methods/src", 19_300), ("xfem/src", 24_600), ("src/files", 2075), ("src/case", 3323), ("src/model", 3210), ("src/run", 2325),
+    ("src/studies", 17_195), ("src/report", 10_545), ("src/cli", 2100), ("benches", 570), ("python/src", 1090), ("methods/tests", 3300), ("xfem/tests", 125),
+    ("tests", 18_840),
 ];
 
 /// Lines of all sources in a folder and below.

@@ -3,9 +3,10 @@
 //! The first branch function jumps along the line behind its tip, as far as that goes. So only nodes carry it whose cells
 //! hold no part of that line but the crack itself: a bend, another crack, the other end are the end of a tip's room. A tip
 //! without that room for its own cells ends like one without branch functions, on the last cell edge it crosses; short
-//! straight cracks take functions of both ends at once.
+//! cracks take functions of both ends at once.
 //!
-//! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards.
+//! The radius is no larger than the room. A zone that no crack but its own enters is sought from the given radius downwards, to the
+//! smallest ramp, which others may enter.
 
 pub mod corners;
 mod ends;
