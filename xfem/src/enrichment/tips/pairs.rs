@@ -25,9 +25,6 @@ use super::{SHORTEST, Search};
 /// each other than they seem.
 const LEADING: f64 = 0.25;
 
-/// Longest with bends near its ends, in edges of the mesh.
-const LONGEST: f64 = 12.0;
-
 /// A short crack.
 #[derive(Debug)]
 pub(super) struct Pair {
@@ -169,8 +166,8 @@ impl Search<'_> {
         arms.iter().map(|&arm| self.inside(arm)).sum()
     }
 
-    /// Whether its ends are near each other or bends for what they ask for, a ramp or functions on their own cells: the smallest ones
-    /// share a cell, or hold bends; or it is one arm with room for functions at neither.
+    /// Whether its ends are nearer to each other than what they ask for, a ramp or functions on their own cells: the smallest ones
+    /// share a cell; or it is one arm with room for functions at neither.
     fn is_short(&self, pair: &Pair) -> bool {
         let ramp = |&tip: &usize| {
             let tip = &self.arrangement.tips[tip];
@@ -186,23 +183,15 @@ impl Search<'_> {
             })
         };
         let ramps: Vec<BTreeSet<usize>> = pair.tips.iter().map(ramp).collect();
-        // What parts arms and the functions of tips: sharp bends, and where a crack with one tip starts.
-        let bends = pair
-            .arms
-            .windows(2)
-            .filter(|w| self.straight[w[0]] != self.straight[w[1]]);
-        let bends = bends.filter_map(|w| self.at_end(w[0], 1));
+        // Of a crack with one tip the start takes the place of the other.
         let start = (pair.tips.len() == 1).then(|| pair.path[pair.path.len() / 2]);
-        let beside = bends.chain(start).flat_map(|x| self.cells_beside(&x));
-        let beside: BTreeSet<usize> = beside.collect();
-        let roomless = pair.tips.len() == 2 && pair.tips.iter().all(|&tip| !self.kept[tip]);
-        let bent = ramps.iter().any(|ramp| !ramp.is_disjoint(&beside));
-        let apart = match ramps.as_slice() {
-            [one, two] => one.is_disjoint(two),
-            _ => true,
+        let beside = start.iter().flat_map(|x| self.cells_beside(x)).collect();
+        let meet = match ramps.as_slice() {
+            [one, two] => !one.is_disjoint(two),
+            ramps => ramps.iter().any(|ramp| !ramp.is_disjoint(&beside)),
         };
-        let long = self.length(&pair.arms) > LONGEST * self.lengths.smallest;
-        roomless && pair.arms.len() == 1 || !apart || bent && !long
+        let roomless = pair.tips.len() == 2 && pair.tips.iter().all(|&tip| !self.kept[tip]);
+        meet || roomless && pair.arms.len() == 1
     }
 
     /// Whether a tip goes without the ramp that it asks for, or without functions. That of a crack which starts on a side or another
