@@ -61,8 +61,7 @@ pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> T
     let ahead = match &crack.geometry {
         Geometry::Curve(curve) => {
             let along = curve.at(crack.range[end]).1;
-            let ahead = if end == 0 { along.map(|v| -v) } else { along };
-            ahead
+            if end == 0 { along.map(|v| -v) } else { along }
         }
         _ => [0.0; 3],
     };

@@ -1,6 +1,6 @@
 //! Stress intensity factors by the domain interaction integral, 2D.
 //!
-//! With q = 1 around the tip and 0 outside, u^aux the [unit fields](super::williams) of the tangent at the tip, [continued](super::behind)
+//! With q = 1 around the tip and 0 outside, u^aux the [unit fields](super::williams) of the tangent at the tip, continued
 //! up to the faces, and x₁ ahead:
 //!
 //! ```text

@@ -137,7 +137,7 @@ impl Search<'_> {
         let at_tip = (at_tip, WITHIN * self.lengths.smallest);
         let free = |cells: &BTreeSet<usize>, nodes: &BTreeSet<u32>, last| {
             let alone = self.holds_only(&own, cells);
-            if !alone && !(cut && last) {
+            if !(alone || cut && last) {
                 return None;
             }
             // Beyond a crossing an arm goes on, but not its functions.
