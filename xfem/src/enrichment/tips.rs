@@ -429,6 +429,13 @@ impl Search<'_> {
         own.map(|(_, c)| c.range[1] - c.range[0]).sum()
     }
 
+    /// Whether a tip lies in cells longer than some of their widths: such hold nothing of it, and its functions become dependent.
+    fn is_slender(&self, number: usize, longest: f64) -> bool {
+        let cells = &self.arrangement.tips[number].cells;
+        let mut aspects = cells.iter().map(|&cell| self.mesh.map(cell).aspect());
+        aspects.any(|aspect| aspect > longest)
+    }
+
     /// Whether the cells of a tip can carry its functions.
     fn has_room(&self, number: usize) -> bool {
         let tip = &self.arrangement.tips[number];
@@ -439,14 +446,11 @@ impl Search<'_> {
         let nodes = self.mesh.nodes_of(self.cells_beside(&tip.x));
         let least = SHORTEST * self.mesh.map(tip.cells[0]).diagonal();
         let parted = parted && self.inside(tip.arm) > least;
-        // Around a tip nothing is slender: such cells hold nothing of it, and their functions become dependent.
         let longest = match self.arms[tip.arm].tip {
             Tip::Auto => SLENDER,
             _ => SLENDEREST,
         };
-        let mut aspects = tip.cells.iter().map(|&cell| self.mesh.map(cell).aspect());
-        let slender = aspects.any(|aspect| aspect > longest);
-        if !parted || slender {
+        if !parted || self.is_slender(number, longest) {
             return false;
         }
         let end = self.end(number);

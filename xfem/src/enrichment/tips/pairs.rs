@@ -19,7 +19,7 @@ use crate::geometry::{Point, dot, norm, sub};
 
 use super::super::zone::Zone;
 use super::ends::Ending;
-use super::{SHORTEST, Search};
+use super::{SHORTEST, SLENDER, Search};
 
 /// Least cosine of the angle of a crack with the line between its ends, 75 degrees: one that winds has ends that are farther from
 /// each other than they seem.
@@ -45,6 +45,9 @@ impl Search<'_> {
             let asks = self.arms[arms[0]].tip != Tip::None;
             let long_enough = self.length(&arms) > SHORTEST * self.lengths.smallest;
             let pair = self.pair(arms).filter(|_| asks && long_enough);
+            // Functions of both ends and of the legs: too many for slender cells.
+            let slender = |pair: &Pair| pair.tips.iter().any(|&tip| self.is_slender(tip, SLENDER));
+            let pair = pair.filter(|pair| !slender(pair));
             if let Some(pair) = pair.filter(|pair| self.is_short(pair) && self.lacks_room(pair)) {
                 self.paired.extend(&pair.arms);
                 let legs = self.legs(&pair);
