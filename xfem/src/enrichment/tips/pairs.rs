@@ -45,9 +45,13 @@ impl Search<'_> {
             let asks = self.arms[arms[0]].tip != Tip::None;
             let long_enough = self.length(&arms) > SHORTEST * self.lengths.smallest;
             let pair = self.pair(arms).filter(|_| asks && long_enough);
-            // Functions of both ends and of the legs: too many for slender cells.
-            let slender = |pair: &Pair| pair.tips.iter().any(|&tip| self.is_slender(tip, 2.0 * SLENDER));
-            let pair = pair.filter(|pair| !slender(pair));
+            // Functions of both ends and of legs: too many for slender cells.
+            let slender = |pair: &Pair| {
+                pair.tips
+                    .iter()
+                    .any(|&tip| self.is_slender(tip, 2.0 * SLENDER))
+            };
+            let pair = pair.filter(|pair| pair.arms.len() == 1 || !slender(pair));
             if let Some(pair) = pair.filter(|pair| self.is_short(pair) && self.lacks_room(pair)) {
                 self.paired.extend(&pair.arms);
                 let legs = self.legs(&pair);
