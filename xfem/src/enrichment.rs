@@ -464,14 +464,11 @@ fn beside((mesh, rounding): (&Mesh, f64), frame: &TipFrame, crack: &Crack, cell:
         false => snapped(frame.beside(x)[1], rounding),
     };
     let levels: Vec<f64> = map.iter().zip(mesh.cell(cell)).map(level).collect();
-    if !is_split(&levels) {
-        return if levels.iter().any(|f| *f < 0.0) {
-            -1.0
-        } else {
-            1.0
-        };
+    match levels.iter().any(|f| *f < 0.0) {
+        _ if is_split(&levels) => 0.0,
+        true => -1.0,
+        false => 1.0,
     }
-    0.0
 }
 
 /// Whether a crack has a part inside the body.

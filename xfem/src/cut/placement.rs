@@ -58,18 +58,14 @@ pub fn front_frame(index: usize, crack: &Crack) -> Option<TipFrame> {
 
 /// The tip at an end (0 or 1) of a 2D arm, at a place next to it.
 pub fn tip_frame(index: usize, crack: &Crack, end: usize, position: &Point) -> TipFrame {
-    let ahead = match &crack.geometry {
-        Geometry::Curve(curve) => {
-            let along = curve.at(crack.range[end]).1;
-            if end == 0 { along.map(|v| -v) } else { along }
-        }
+    let along = match &crack.geometry {
+        Geometry::Curve(curve) => curve.at(crack.range[end]).1,
         _ => [0.0; 3],
     };
-    let along = if end == 0 { ahead.map(|v| -v) } else { ahead };
     TipFrame {
         crack: index,
         position: *position,
-        ahead,
+        ahead: if end == 0 { along.map(|v| -v) } else { along },
         normal: turned(&along),
         shape: FrontShape::Straight,
     }

@@ -266,7 +266,7 @@ impl Search<'_> {
     }
 
     /// Whether the tips of an arm ask for a ramp.
-    pub(super) fn asks(&self, arm: usize) -> bool {
+    fn asks(&self, arm: usize) -> bool {
         matches!(self.arms[arm].tip, Tip::Auto | Tip::Radius(_))
     }
 
@@ -429,9 +429,8 @@ impl Search<'_> {
         own.map(|(_, c)| c.range[1] - c.range[0]).sum()
     }
 
-    /// Whether a tip lies in cells longer than some of their widths: such hold nothing of it, and its functions become dependent.
-    fn is_slender(&self, number: usize, longest: f64) -> bool {
-        let cells = &self.arrangement.tips[number].cells;
+    /// Whether one of some cells is longer than so many of its widths: it holds nothing of a tip, and functions become dependent.
+    fn is_slender(&self, cells: &[usize], longest: f64) -> bool {
         let mut aspects = cells.iter().map(|&cell| self.mesh.map(cell).aspect());
         aspects.any(|aspect| aspect > longest)
     }
@@ -450,7 +449,7 @@ impl Search<'_> {
             Tip::Auto => SLENDER,
             _ => SLENDEREST,
         };
-        if !parted || self.is_slender(number, longest) {
+        if !parted || self.is_slender(&tip.cells, longest) {
             return false;
         }
         let end = self.end(number);

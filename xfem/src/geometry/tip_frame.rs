@@ -243,20 +243,18 @@ impl TipFrame {
                 FrontShape::Pair { half_length, .. } => Some(half_length),
                 _ => None,
             };
-            // How far from its line a point still lies on the arm: rounding.
-            let width = |psi: f64| match &self.shape {
-                FrontShape::Corner => {
-                    ON_ARM * psi.abs() + 4.0 * f64::EPSILON * norm(&self.position)
-                }
-                FrontShape::Bent(_) => -1.0,
-                FrontShape::Pair { bends, .. } if !bends.is_empty() => -1.0,
+            // How far from its line a point still lies on the arm, in parts of |ψ| and besides: rounding.
+            let [slope, least] = match &self.shape {
+                FrontShape::Corner => [ON_ARM, 4.0 * f64::EPSILON * norm(&self.position)],
+                FrontShape::Bent(_) => [0.0, -1.0],
+                FrontShape::Pair { bends, .. } if !bends.is_empty() => [0.0, -1.0],
                 // Beside the line of a leg lie others of its crack.
-                FrontShape::Pair { half_length, .. } => ON_ARM * half_length,
-                _ => f64::INFINITY,
+                FrontShape::Pair { half_length, .. } => [0.0, ON_ARM * half_length],
+                _ => [0.0, f64::INFINITY],
             };
             for q in 0..L {
                 // Ahead of the tip, and beside an arm, the place tells.
-                if phi[q].abs() > width(psi[q]) {
+                if phi[q].abs() > slope * psi[q].abs() + least {
                     continue;
                 }
                 if reach.map_or(psi[q] <= 0.0, |reach| psi[q].abs() <= reach) {

@@ -222,9 +222,8 @@ impl Search<'_> {
         let rooms = arms.iter().map(|arm| arm.room);
         let room = rooms.fold(f64::INFINITY, f64::min);
         let room = self.clearance(&arms[0].frame.position, &all, room);
-        let slender = |&cell: &usize| self.mesh.map(cell).aspect() > SLENDER;
         let least = SHORTEST * self.mesh.map(*cells.first()?).diagonal();
-        if cells.iter().any(slender) || room <= least {
+        if self.is_slender(cells, SLENDER) || room <= least {
             return None;
         }
         let radii = own.iter().map(|&arm| self.radius(arm, cells, room, room));
@@ -241,7 +240,7 @@ impl Search<'_> {
         let plain = |core: BTreeSet<usize>| {
             let nodes = self.mesh.nodes_of(core.iter().copied());
             let alone = self.holds_only(&all, &core);
-            let alone = alone && !self.any_blocked(arms, &nodes);
+            let alone = alone && !self.any_blocked(arms, &nodes, &BTreeSet::new());
             alone.then(|| Zone::plain(nodes))
         };
         let around = |_| plain(self.near.cells_around(&nodes));

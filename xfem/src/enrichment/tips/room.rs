@@ -147,8 +147,8 @@ impl Search<'_> {
                 true => BTreeSet::new(),
                 false => self.cut_off(&arms[0], nodes),
             };
-            let blocked = |arm| self.is_blocked(arm, nodes, &cut_off);
-            (nodes.iter().all(close) && !arms.iter().any(blocked)).then_some(cut_off)
+            let blocked = self.any_blocked(arms, nodes, &cut_off);
+            (nodes.iter().all(close) && !blocked).then_some(cut_off)
         };
         Zone::widest(self.mesh, near, frame, radius, at_tip, free)
     }
@@ -207,10 +207,15 @@ impl Search<'_> {
         })
     }
 
-    /// Whether a cell of some nodes holds a part of the line of one of some arms beyond what its functions know.
-    pub(super) fn any_blocked(&self, arms: &[Ending], nodes: &BTreeSet<u32>) -> bool {
-        let none = BTreeSet::new();
-        arms.iter().any(|arm| self.is_blocked(arm, nodes, &none))
+    /// Whether a cell of some nodes holds, where it is not cut off, a part of the line of one of some arms beyond what its functions
+    /// know.
+    pub(super) fn any_blocked(
+        &self,
+        arms: &[Ending],
+        nodes: &BTreeSet<u32>,
+        cut_off: &BTreeSet<Place>,
+    ) -> bool {
+        arms.iter().any(|arm| self.is_blocked(arm, nodes, cut_off))
     }
 
     /// Distance of a place from arms other than its own and from the border of the body, at most `room` [m].
